@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "sim/recording/cdr_sample.hpp"
-#include "sim/recording/run_channels.hpp"
+#include "sim/recording/each_topic.hpp"
+#include "sim/recording/step_samples.hpp"
 #include "sim/sil/failure.hpp"
 #include "sim/sil/run_control.hpp"
 

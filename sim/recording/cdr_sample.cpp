@@ -68,14 +68,4 @@ std::vector<std::uint8_t> cdr_of(const hal::dds::Topic& topic, const void* sampl
   return bytes;
 }
 
-gnc::RangeImage frame_of(const hal::dds::LidarFrameSample& sample) {
-  gnc::RangeImage frame{};
-  frame.rays = sample.rays;
-  frame.fov_urad = sample.fov_urad;
-  frame.sequence_number = sample.sequence_number;
-  frame.exposure_time_ns = sample.exposure_time_ns;
-  std::copy(std::begin(sample.ranges), std::end(sample.ranges), frame.ranges.begin());
-  return frame;
-}
-
 }  // namespace tumblesight::sim

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "gnc/lidar/range_image.hpp"
 #include "hal/dds/idl/topics.hpp"
 
 namespace tumblesight::sim {
@@ -30,8 +29,5 @@ template <class Sample>
 std::vector<std::uint8_t> cdr_of(const Sample& sample) {
   return cdr_of(hal::dds::topic_of<Sample>(), &sample);
 }
-
-// A frame as its sample has it.
-gnc::RangeImage frame_of(const hal::dds::LidarFrameSample& sample);
 
 }  // namespace tumblesight::sim

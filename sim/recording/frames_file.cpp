@@ -1,16 +1,12 @@
 #include "sim/recording/frames_file.hpp"
 
-#include <algorithm>
 #include <memory>
-#include <vector>
+#include <type_traits>
 
 #include "hal/dds/idl/hello.hpp"
 #include "hal/dds/idl/icd_hash.hpp"
-#include "hal/dds/idl/step_content.hpp"
 #include "sim/recording/cdr_sample.hpp"
-#include "sim/recording/foxglove_messages.hpp"
-#include "sim/recording/mcap_writer.hpp"
-#include "sim/recording/run_channels.hpp"
+#include "sim/recording/run_writer.hpp"
 #include "sim/recording/step_samples.hpp"
 
 namespace tumblesight::sim {
@@ -19,10 +15,7 @@ namespace {
 class FramesFile {
  public:
   FramesFile(const std::string& path, double swath_m)
-      : file_(path, "tumblesight"),
-        channels_(file_),
-        frame_sample_(std::make_unique<hal::dds::LidarFrameSample>()),
-        swath_m_(swath_m) {}
+      : file_(path), frame_sample_(std::make_unique<hal::dds::LidarFrameSample>()), swath_m_(swath_m) {}
 
   void add_hello(const std::string& target, std::uint32_t run_id) {
     run_id_ = run_id;
@@ -34,48 +27,39 @@ class FramesFile {
     write(hello, 0);
   }
 
-  void add(std::uint32_t k, bool is_last, const SourcedStep& sourced) {
+  void add(std::uint32_t k, const SourcedStep& sourced) {
     const StepOfRun of{run_id_, k};
     const StepResult& step = sourced.step;
-    const std::int64_t time_ns = std::max<std::int64_t>(0, step.time_ns);
+    ShownStep shown;
+    shown.time_ns = step.time_ns;
+    shown.swath_m = swath_m_;
     if (step.truth_known)
-      write(truth_sample(of, step.sequence, step.frame_index, step.truth, step.time_ns), time_ns);
-    hal::dds::StepContent content;
-    for (const gnc::RangeImage* frame : sourced.input.frames) {
-      fill(*frame_sample_, of, *frame);
-      write(*frame_sample_, time_ns);
-      content.add(*frame_sample_);
-      file_.write(channels_.points, time_ns, point_cloud_json(*frame, time_ns));
-    }
-    for (const gnc::ChaserAttitude& attitude : sourced.input.navigations) {
-      const hal::dds::NavigationSample sample = navigation_sample(of, attitude);
-      write(sample, time_ns);
-      content.add(sample);
-    }
-    hal::dds::StepSample announced{};
-    announced.run_id = run_id_;
-    announced.k = k;
-    announced.time_ns = step.time_ns;
-    announced.last = is_last ? 1 : 0;
-    content.announce_in(announced);
-    write(announced, time_ns);
-    hal::AttitudeReport none;
-    none.validity = hal::Validity::kNoFrame;
-    if (step.truth_known)
-      file_.write(channels_.transforms, time_ns, transforms_json(none, &step.truth, swath_m_, time_ns));
+      write(truth_sample(of, step.sequence, step.frame_index, step.truth, step.time_ns), step.time_ns);
+    write_step(of, sourced.input, *frame_sample_, [&](const auto& sample) {
+      write(sample, step.time_ns);
+      // Its points follow a frame.
+      if constexpr (std::is_same_v<std::decay_t<decltype(sample)>, hal::dds::LidarFrameSample>) {
+        const gnc::RangeImage frame = frame_of(sample);
+        shown.frames = {&frame};
+        file_.write(shown, kTime);
+      }
+    });
+    shown.frames.clear();
+    if (step.truth_known) shown.truth = &step.truth;
+    file_.write(shown, kTime);
   }
 
   void close() { file_.close(); }
 
  private:
+  static constexpr ShownTime kTime{};
+
   template <class Sample>
   void write(const Sample& sample, std::int64_t time_ns) {
-    const std::vector<std::uint8_t> bytes = cdr_of(sample);
-    file_.write(channels_.of_bus.at(&hal::dds::topic_of<Sample>()), time_ns, bytes.data(), bytes.size());
+    file_.write(hal::dds::topic_of<Sample>(), kTime(time_ns), cdr_of(sample));
   }
 
-  McapWriter file_;
-  RunChannels channels_;
+  RunWriter file_;
   std::unique_ptr<hal::dds::LidarFrameSample> frame_sample_;
   double swath_m_;
   std::uint32_t run_id_ = 0;
@@ -87,7 +71,11 @@ void write_frames_file(const std::string& path, StepSource& source, const std::s
                        std::uint32_t run_id, double swath_m) {
   FramesFile file(path, swath_m);
   file.add_hello(target, run_id);
-  for (std::uint32_t k = 0; k < source.steps(); ++k) file.add(k, k + 1 == source.steps(), source.next());
+  for (std::uint32_t k = 0; k < source.steps(); ++k) {
+    SourcedStep step = source.next();
+    step.input.last = k + 1 == source.steps();
+    file.add(k, step);
+  }
   file.close();
 }
 

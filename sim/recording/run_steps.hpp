@@ -49,7 +49,6 @@ class RunSteps final : public StepSource {
   void read_steps();
   void read_contents();
   void require_whole_steps() const;
-  FrameTruth truth_of(const RecordedStep& step) const;
 
   RunFile file_;
   std::string target_;

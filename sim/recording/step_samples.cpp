@@ -15,6 +15,16 @@ void fill(hal::dds::LidarFrameSample& sample, const StepOfRun& step, const gnc::
   std::copy(frame.ranges.begin(), frame.ranges.end(), sample.ranges);
 }
 
+gnc::RangeImage frame_of(const hal::dds::LidarFrameSample& sample) {
+  gnc::RangeImage frame{};
+  frame.rays = sample.rays;
+  frame.fov_urad = sample.fov_urad;
+  frame.sequence_number = sample.sequence_number;
+  frame.exposure_time_ns = sample.exposure_time_ns;
+  std::copy(std::begin(sample.ranges), std::end(sample.ranges), frame.ranges.begin());
+  return frame;
+}
+
 hal::dds::NavigationSample navigation_sample(const StepOfRun& step, const gnc::ChaserAttitude& attitude) {
   hal::dds::NavigationSample sample{};
   sample.run_id = step.run_id;
@@ -23,6 +33,31 @@ hal::dds::NavigationSample navigation_sample(const StepOfRun& step, const gnc::C
   std::copy(attitude.q_inertial_lrf.begin(), attitude.q_inertial_lrf.end(), sample.q_inertial_lrf);
   sample.valid = attitude.valid ? 1 : 0;
   return sample;
+}
+
+gnc::ChaserAttitude attitude_of(const hal::dds::NavigationSample& sample) {
+  gnc::ChaserAttitude attitude;
+  attitude.time_ns = sample.time_ns;
+  std::copy(std::begin(sample.q_inertial_lrf), std::end(sample.q_inertial_lrf),
+            attitude.q_inertial_lrf.begin());
+  attitude.valid = sample.valid != 0;
+  return attitude;
+}
+
+hal::dds::CommandSample command_sample(const StepOfRun& step, const hal::CommandPacket& packet) {
+  hal::dds::CommandSample sample{};
+  sample.run_id = step.run_id;
+  sample.k = step.k;
+  sample.size = packet.size;
+  std::copy(packet.bytes.begin(), packet.bytes.end(), sample.bytes);
+  return sample;
+}
+
+hal::CommandPacket packet_of(const hal::dds::CommandSample& sample) {
+  hal::CommandPacket packet;
+  packet.size = sample.size;
+  std::copy(std::begin(sample.bytes), std::end(sample.bytes), packet.bytes.begin());
+  return packet;
 }
 
 hal::dds::TruthSample truth_sample(const StepOfRun& step, std::uint32_t sequence, std::uint32_t frame,
@@ -39,6 +74,16 @@ hal::dds::TruthSample truth_sample(const StepOfRun& step, std::uint32_t sequence
   for (int i = 0; i < 3; ++i) sample.rate_lrf_rad_s[i] = static_cast<float>(truth.rate_lrf_rad_s[i]);
   sample.range_m = static_cast<float>(truth.range_m);
   return sample;
+}
+
+FrameTruth frame_truth_of(const hal::dds::TruthSample& sample) {
+  FrameTruth truth{};
+  const float* const q = sample.q_lrf_trf;
+  const float* const rate = sample.rate_lrf_rad_s;
+  truth.q_lrf_trf = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+  truth.rate_lrf_rad_s = Eigen::Vector3d(rate[0], rate[1], rate[2]);
+  truth.range_m = sample.range_m;
+  return truth;
 }
 
 }  // namespace tumblesight::sim

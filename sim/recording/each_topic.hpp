@@ -1,12 +1,7 @@
-// RunChannels: the channels of a recording of a run, whoever writes it: the topics of the bus as they are,
-// and what viewers show without set-up (foxglove_messages.hpp).
+// Every topic of the bus, by its type.
 #pragma once
 
-#include <map>
-#include <string>
-
 #include "hal/dds/idl/topics.hpp"
-#include "sim/recording/mcap_writer.hpp"
 
 namespace tumblesight::sim {
 
@@ -30,12 +25,5 @@ void each_topic(const Visit& visit) {
   visit(TypeOf<hal::dds::StepDoneSample>(), "StepDone");
   visit(TypeOf<hal::dds::TruthSample>(), "Truth");
 }
-
-struct RunChannels {
-  explicit RunChannels(McapWriter& file);
-
-  std::map<const hal::dds::Topic*, McapId> of_bus;
-  McapId points, transforms, log, figures;
-};
 
 }  // namespace tumblesight::sim
