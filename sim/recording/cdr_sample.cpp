@@ -3,9 +3,7 @@
 #include <dds/ddsi/ddsi_cdrstream.h>
 #include <dds/ddsi/ddsi_serdata.h>
 
-#include <algorithm>
 #include <cstring>
-#include <iterator>
 #include <memory>
 
 namespace tumblesight::sim {

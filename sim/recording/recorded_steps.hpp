@@ -38,7 +38,6 @@ class RecordedSteps final : public StepSource {
 
  private:
   void take_frame(SourcedStep& sourced);
-  bool is_pictured(std::size_t frame) const;
 
   const RecordingFile& file_;
   const std::vector<std::optional<RecordedTruth>>& truth_;

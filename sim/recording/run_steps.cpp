@@ -1,7 +1,5 @@
 #include "sim/recording/run_steps.hpp"
 
-#include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "hal/dds/idl/hello.hpp"
@@ -10,8 +8,6 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::uint32_t kFirstPictures = 10;
-constexpr std::uint32_t kLaterPictures = 16;  // evenly spread
 const FrameTruth kUnknownTruth{Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(), 0.0};
 
 }  // namespace
@@ -113,8 +109,7 @@ SourcedStep RunSteps::next() {
   }
   sourced.input.navigations = step.navigations;
   sourced.input.packets = step.packets;
-  const bool is_regular = k % (1 + steps() / kLaterPictures) == 0;
-  sourced.keep_picture = !step.frames.empty() && (frames_sent_ < kFirstPictures || is_regular);
+  sourced.keep_picture = !step.frames.empty() && is_pictured(frames_sent_, k, steps());
   frames_sent_ += static_cast<std::uint32_t>(step.frames.size());
   return sourced;
 }
