@@ -20,7 +20,7 @@
 #include "sim/host/text.hpp"
 #include "sim/host/write_file.hpp"
 #include "sim/operations/signed_telecommand.hpp"
-#include "sim/sil/run_file.hpp"
+#include "sim/recording/run_file.hpp"
 #include "sim/world/scenario/disturbance.hpp"
 
 namespace tumblesight::sim {

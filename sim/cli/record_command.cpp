@@ -16,11 +16,11 @@
 #include "sim/host/progress.hpp"
 #include "sim/host/text.hpp"
 #include "sim/host/write_file.hpp"
+#include "sim/recording/frames_file.hpp"
 #include "sim/recording/make_recording.hpp"
+#include "sim/recording/recorded_steps.hpp"
 #include "sim/recording/recording_file.hpp"
 #include "sim/recording/truth_file.hpp"
-#include "sim/sil/frames_file.hpp"
-#include "sim/sil/recorded_steps.hpp"
 
 namespace tumblesight::sim {
 namespace {

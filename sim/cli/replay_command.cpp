@@ -20,11 +20,11 @@
 #include "sim/host/program_files.hpp"
 #include "sim/host/progress.hpp"
 #include "sim/host/text.hpp"
+#include "sim/recording/recorded_steps.hpp"
 #include "sim/recording/recording_file.hpp"
+#include "sim/recording/run_steps.hpp"
 #include "sim/report/replay_report.hpp"
 #include "sim/report/sil_report.hpp"
-#include "sim/sil/recorded_steps.hpp"
-#include "sim/sil/run_steps.hpp"
 
 namespace tumblesight::sim {
 namespace {

@@ -6,9 +6,10 @@
 #include <exception>
 #include <utility>
 
-#include "sim/sil/cdr_sample.hpp"
+#include "sim/recording/cdr_sample.hpp"
+#include "sim/recording/each_topic.hpp"
+#include "sim/recording/step_samples.hpp"
 #include "sim/sil/failure.hpp"
-#include "sim/sil/run_channels.hpp"
 #include "sim/sil/run_control.hpp"
 
 namespace tumblesight::sim {

@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/console/foxglove_session.hpp"
-#include "sim/recording/mcap_writer.hpp"
-#include "sim/sil/run_channels.hpp"
+#include "sim/console/shown_run.hpp"
+#include "sim/recording/run_writer.hpp"
 
 namespace tumblesight::sim {
 
@@ -32,21 +31,18 @@ class JoinedRecording {
 
  private:
   struct Waiting {
-    McapId channel;
+    const hal::dds::Topic* topic;
     std::uint32_t k;
     std::vector<std::uint8_t> bytes;
   };
   void write_waiting(std::size_t most);
-  std::int64_t time_in_file_ns(std::int64_t time_ns);
 
-  McapWriter file_;
-  RunChannels channels_;
-  FoxgloveSession session_;
-  std::map<std::uint32_t, McapId> channel_of_subscription_;
+  RunWriter file_;
+  ShownRun shown_;
+  ShownTime time_;
   std::map<std::uint32_t, std::int64_t> time_of_step_;
   std::vector<Waiting> waiting_;  // for the time of their step
   std::int64_t last_ns_ = 0;
-  std::optional<std::int64_t> first_ns_;
 };
 
 }  // namespace tumblesight::sim

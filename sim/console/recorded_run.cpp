@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "sim/recording/step_samples.hpp"
+
 namespace tumblesight::sim {
 namespace {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sim/console/run_source.hpp"
-#include "sim/sil/run_file.hpp"
+#include "sim/recording/run_file.hpp"
 
 namespace tumblesight::sim {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "sim/sil/sil_run.hpp"
+#include "sim/recording/run_step.hpp"
 
 namespace tumblesight::sim {
 

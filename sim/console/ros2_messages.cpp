@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/sil/sil_run.hpp"
-#include "sim/sil/viewed_frame.hpp"
+#include "sim/recording/run_step.hpp"
+#include "sim/recording/viewed_frame.hpp"
 
 namespace tumblesight::sim {
 namespace {

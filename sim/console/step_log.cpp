@@ -6,7 +6,7 @@
 #include "hal/dds/idl/sample_fields.hpp"
 #include "hal/messages/event_text.hpp"
 #include "sim/console/step_json.hpp"
-#include "sim/sil/sil_run.hpp"
+#include "sim/recording/run_step.hpp"
 
 namespace tumblesight::sim {
 namespace {

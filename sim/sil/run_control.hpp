@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "sim/operations/signed_telecommand.hpp"
+#include "sim/recording/step_source.hpp"
 #include "sim/sil/failure.hpp"
 #include "sim/sil/frame_faults.hpp"
 #include "sim/sil/runtime_folder.hpp"
-#include "sim/sil/step_source.hpp"
 
 namespace tumblesight::sim {
 

@@ -7,9 +7,10 @@
 #include <type_traits>
 #include <utility>
 
+#include "sim/recording/cdr_sample.hpp"
+#include "sim/recording/each_topic.hpp"
+#include "sim/recording/run_step.hpp"
 #include "sim/sil/failure.hpp"
-#include "sim/sil/foxglove_messages.hpp"
-#include "sim/sil/sil_run.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -33,7 +34,7 @@ constexpr bool kIsAnswer =
 }  // namespace
 
 RunRecorder::RunRecorder(const hal::dds::Domain& domain, const std::string& path, double swath_m)
-    : swath_m_(swath_m), file_(path, "tumblesight"), channels_(file_) {
+    : swath_m_(swath_m), file_(path) {
   // Endpoints do not receive samples of their own participant, so the recording has one of its own.
   participant_ = domain.join();
   check(participant_);
@@ -42,7 +43,7 @@ RunRecorder::RunRecorder(const hal::dds::Domain& domain, const std::string& path
     const hal::dds::Topic& topic = hal::dds::topic_of<Sample>();
     const dds_entity_t reader = hal::dds::create_reader(domain, participant_, topic);
     check(reader);
-    sources_.push_back({reader, channels_.of_bus.at(&topic), kIsAnswer<Sample>});
+    sources_.push_back({reader, &topic, kIsAnswer<Sample>});
   });
 }
 
@@ -66,24 +67,25 @@ void RunRecorder::add(const FrameTruth& truth, std::int64_t exposure_time_ns) {
 }
 
 void RunRecorder::add(const std::vector<const gnc::RangeImage*>& frames, std::int64_t time_ns) {
-  for (const gnc::RangeImage* frame : frames)
-    file_.write(channels_.points, time_in_file_ns(time_ns),
-                point_cloud_json(*frame, time_in_file_ns(time_ns)));
+  ShownStep step;
+  step.time_ns = time_ns;
+  step.frames = frames;
+  time_.begin_with(time_ns);
+  file_.write(step, time_);
   take_samples(time_ns);
 }
 
 void RunRecorder::add(const StepAnswer& answer) {
   answered_samples_ += answer.samples;
-  const hal::AttitudeReport& report = answer.attitude;
-  const std::int64_t time_ns = time_in_file_ns(report.time_ns);
-  const FrameTruth* const truth = truth_of(report);
-  // Where the target was when the points were measured: in a free run the answer comes cycles later.
-  const std::int64_t pose_time_ns =
-      gives_attitude(report) ? time_in_file_ns(report.exposure_time_ns) : time_ns;
-  file_.write(channels_.transforms, time_ns, transforms_json(report, truth, swath_m_, pose_time_ns));
-  file_.write(channels_.figures, time_ns, figures_json(report, truth));
-  for (const hal::Event& event : answer.events) file_.write(channels_.log, time_ns, log_json(event, time_ns));
-  take_samples(report.time_ns);
+  ShownStep step;
+  step.time_ns = answer.attitude.time_ns;
+  step.report = &answer.attitude;
+  step.truth = truth_of(answer.attitude);
+  step.swath_m = swath_m_;
+  step.events = answer.events;
+  time_.begin_with(step.time_ns);
+  file_.write(step, time_);
+  take_samples(step.time_ns);
 }
 
 // Only a report with an attitude names its frame.
@@ -95,18 +97,12 @@ const FrameTruth* RunRecorder::truth_of(const hal::AttitudeReport& report) const
   return found == truths_.rend() ? nullptr : &found->truth;
 }
 
-std::int64_t RunRecorder::time_in_file_ns(std::int64_t time_ns) {
-  if (!first_ns_) first_ns_ = time_ns;
-  return std::max<std::int64_t>(0, time_ns - std::min<std::int64_t>(0, *first_ns_));
-}
-
-void RunRecorder::take_samples(std::int64_t step_time_ns) {
-  const std::int64_t time_ns = time_in_file_ns(step_time_ns);
-  last_ns_ = step_time_ns;
+void RunRecorder::take_samples(std::int64_t time_ns) {
+  last_ns_ = time_ns;
   std::vector<std::uint8_t> bytes;
   for (const Source& source : sources_) {
     while (take_cdr(source.reader, bytes)) {
-      file_.write(source.channel, time_ns, bytes.data(), bytes.size());
+      file_.write(*source.topic, time_(time_ns), bytes);
       taken_answer_samples_ += source.is_answer ? 1 : 0;
     }
   }
@@ -115,10 +111,10 @@ void RunRecorder::take_samples(std::int64_t step_time_ns) {
 void RunRecorder::close() {
   if (std::exchange(is_closed_, true)) return;
   const auto give_up = std::chrono::steady_clock::now() + kLongestWait;
-  if (first_ns_) take_samples(last_ns_);
+  if (last_ns_) take_samples(*last_ns_);
   while (taken_answer_samples_ < answered_samples_ && std::chrono::steady_clock::now() < give_up) {
     std::this_thread::sleep_for(kBetweenLooks);
-    take_samples(last_ns_);
+    take_samples(last_ns_.value_or(0));
   }
   file_.close();
 }

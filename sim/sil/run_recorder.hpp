@@ -1,7 +1,6 @@
-// RunRecorder: records a run in an MCAP file. It joins the bus as one more participant and keeps every sample
-// of every topic unchanged (CDR, with tumblesight.idl as schema). It also writes messages that viewers show
-// without set-up (foxglove_messages.hpp). The time of a message is the mission time of its step. MCAP has no
-// negative times: if the first step is before 0, times count from that step.
+// RunRecorder: a run as an MCAP file (RunWriter). It joins the bus as one more participant and keeps every
+// sample of every topic as it came. The time of a message is the mission time of its step, counted from the
+// first step if that is before 0, which the format does not have.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +13,8 @@
 #include "gnc/lidar/range_image.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "hal/dds/idl/topics.hpp"
-#include "sim/recording/mcap_writer.hpp"
+#include "sim/recording/run_writer.hpp"
 #include "sim/sil/answer_collector.hpp"
-#include "sim/sil/run_channels.hpp"
 #include "sim/world/sensor/frame_truth.hpp"
 
 namespace tumblesight::sim {
@@ -46,25 +44,23 @@ class RunRecorder {
  private:
   struct Source {
     dds_entity_t reader;
-    McapId channel;
+    const hal::dds::Topic* topic;
     bool is_answer;  // of the flight program to a step
   };
   void take_samples(std::int64_t time_ns);
-  std::int64_t time_in_file_ns(std::int64_t time_ns);
   const FrameTruth* truth_of(const hal::AttitudeReport& report) const;
 
   double swath_m_;
   dds_entity_t participant_ = 0;
-  McapWriter file_;
-  RunChannels channels_;
+  RunWriter file_;
+  ShownTime time_;
   std::vector<Source> sources_;
   struct TruthOfFrame {
     std::int64_t exposure_time_ns;
     FrameTruth truth;
   };
-  std::deque<TruthOfFrame> truths_;  // of the last frames
-  std::int64_t last_ns_ = 0;
-  std::optional<std::int64_t> first_ns_;
+  std::deque<TruthOfFrame> truths_;      // of the last frames
+  std::optional<std::int64_t> last_ns_;  // of the last step
   std::uint64_t answered_samples_ = 0, taken_answer_samples_ = 0;
   bool is_closed_ = false;
 };

@@ -249,10 +249,6 @@ void conclude(bool free_running, SilRunResult& result) {
 
 }  // namespace
 
-bool gives_attitude(const hal::AttitudeReport& report) {
-  return report.validity == hal::Validity::kValid || report.validity == hal::Validity::kDoubtful;
-}
-
 SilRunResult run_sil(const SilSettings& settings, StepSource& source, const SilProgress& progress,
                      const FrameObserver& frame_sent) {
   SilRunResult result;

@@ -10,9 +10,7 @@
 
 #include "gnc/lidar/range_image.hpp"
 #include "hal/dds/idl/development_key.hpp"
-#include "hal/messages/attitude_report.hpp"
-#include "hal/messages/event.hpp"
-#include "hal/messages/telemetry.hpp"
+#include "sim/recording/run_step.hpp"
 #include "sim/world/scenario/sequence.hpp"
 #include "sim/world/sensor/flash_lidar.hpp"
 
@@ -36,24 +34,6 @@ struct SilSettings {
   // The flight program must have the same key.
   std::array<std::uint8_t, 32> command_key = hal::dds::kDevelopmentKey;
 };
-
-// One step: what was sent, and the answer of the flight program.
-struct StepResult {
-  std::uint32_t sequence = 0;
-  std::uint32_t frame_index = 0;
-  std::int64_t time_ns = 0;
-  std::int64_t exposure_time_ns = 0;  // of the frame that the sensor took; without one that of the step
-  FrameTruth truth;                   // of the frame that the attitude is from, if that is an earlier one
-  bool truth_known = true;            // otherwise the truth says only whether a frame was delivered
-  bool answered = false;
-  hal::AttitudeReport attitude;
-  hal::Telemetry telemetry;
-  std::vector<hal::Event> events;
-  std::uint32_t state_crc32 = 0;
-};
-
-// Whether the report holds an attitude: valid or doubtful.
-bool gives_attitude(const hal::AttitudeReport& report);
 
 // What another program asked of the run while it went on (RunControl).
 struct RunRequest {

@@ -9,11 +9,10 @@
 #include <thread>
 
 #include "hal/dds/idl/icd_hash.hpp"
-#include "hal/dds/idl/step_content.hpp"
 #include "hal/dds/idl/wait_limit.hpp"
 #include "sim/host/interruption.hpp"
 #include "sim/host/text.hpp"
-#include "sim/sil/step_samples.hpp"
+#include "sim/recording/step_samples.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -316,37 +315,12 @@ void SilSession::send(const StepInput& input) {
   require_not_interrupted();
   const std::uint32_t k = next_k_++;
   check_.sent(k, input.time_ns, input.frames);
-  const StepOfRun of{secret_.run_id, k};
-  hal::dds::StepContent content;
-  for (const gnc::RangeImage* frame : input.frames) {
-    fill(frame_sample_, of, *frame);
-    write(endpoints_->frames, frame_sample_);
-    content.add(frame_sample_);
-  }
-  for (const gnc::ChaserAttitude& attitude : input.navigations) {
-    const hal::dds::NavigationSample sample = navigation_sample(of, attitude);
-    write(endpoints_->navigations, sample);
-    content.add(sample);
-  }
-  std::vector<hal::CommandPacket> packets;
-  for (const Telecommand& command : input.commands) packets.push_back(encoder_.packet(command));
-  packets.insert(packets.end(), input.packets.begin(), input.packets.end());
-  for (const hal::CommandPacket& packet : packets) {
-    hal::dds::CommandSample sample{};
-    sample.run_id = secret_.run_id;
-    sample.k = k;
-    sample.size = packet.size;
-    std::copy(packet.bytes.begin(), packet.bytes.end(), sample.bytes);
-    write(endpoints_->commands, sample);
-    content.add(sample);
-  }
-  hal::dds::StepSample step{};
-  step.run_id = secret_.run_id;
-  step.k = k;
-  step.time_ns = input.time_ns;
-  step.last = input.last ? 1 : 0;
-  content.announce_in(step);
-  write(endpoints_->steps, step);
+  StepInput sent = input;
+  sent.packets.clear();
+  for (const Telecommand& command : input.commands) sent.packets.push_back(encoder_.packet(command));
+  sent.packets.insert(sent.packets.end(), input.packets.begin(), input.packets.end());
+  write_step({secret_.run_id, k}, sent, frame_sample_,
+             [this](const auto& sample) { write(endpoints_->writer_of(sample), sample); });
   last_sent_ = input.last;
   if (recorder_) recorder_->add(input.frames, input.time_ns);
 }

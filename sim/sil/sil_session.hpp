@@ -10,15 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "gnc/attitude/chaser_attitude.hpp"
-#include "gnc/lidar/range_image.hpp"
 #include "hal/dds/idl/domain.hpp"
 #include "hal/dds/idl/hello.hpp"
 #include "hal/dds/idl/peer_life.hpp"
 #include "hal/dds/idl/run_secret.hpp"
-#include "hal/messages/command_packet.hpp"
 #include "hal/messages/mode.hpp"
 #include "sim/operations/signed_telecommand.hpp"
+#include "sim/recording/run_step.hpp"
 #include "sim/sil/answer_check.hpp"
 #include "sim/sil/answer_collector.hpp"
 #include "sim/sil/domain_lease.hpp"
@@ -30,16 +28,6 @@
 #include "sim/sil/simulator_endpoints.hpp"
 
 namespace tumblesight::sim {
-
-// What the simulator sends for one step. Each frame has its own exposure time and sequence number.
-struct StepInput {
-  std::int64_t time_ns = 0;
-  std::vector<const gnc::RangeImage*> frames;
-  std::vector<gnc::ChaserAttitude> navigations;  // of the chaser, at the exposures of the frames
-  std::vector<Telecommand> commands;
-  std::vector<hal::CommandPacket> packets;  // sent after `commands`, unchanged: for tests of invalid packets
-  bool last = false;
-};
 
 // Every function throws SilFailure when the run cannot continue.
 class SilSession {

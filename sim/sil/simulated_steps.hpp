@@ -9,7 +9,7 @@
 
 #include "gnc/lidar/range_image.hpp"
 #include "sim/operations/scene_faults.hpp"
-#include "sim/sil/step_source.hpp"
+#include "sim/recording/step_source.hpp"
 #include "sim/world/frame_renderer.hpp"
 
 namespace tumblesight::sim {

@@ -22,6 +22,11 @@ struct SimulatorEndpoints {
   hal::dds::Reader<hal::dds::StepDoneSample> steps_done;
 
   explicit SimulatorEndpoints(const hal::dds::Domain& domain);  // throws SilFailure
+  // Of what is sent for a step.
+  auto& writer_of(const hal::dds::LidarFrameSample&) { return frames; }
+  auto& writer_of(const hal::dds::NavigationSample&) { return navigations; }
+  auto& writer_of(const hal::dds::CommandSample&) { return commands; }
+  auto& writer_of(const hal::dds::StepSample&) { return steps; }
   // Binds every reader to the flight program. True once every endpoint is matched with its counterpart there,
   // so that no sample is lost from now on.
   bool bind(const hal::dds::PeerKey& flight);

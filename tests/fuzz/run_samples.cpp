@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "sim/console/step_log.hpp"
-#include "sim/sil/cdr_sample.hpp"
-#include "sim/sil/foxglove_messages.hpp"
-#include "sim/sil/run_channels.hpp"
+#include "sim/recording/cdr_sample.hpp"
+#include "sim/recording/each_topic.hpp"
+#include "sim/recording/foxglove_messages.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 namespace tumblesight::fuzz {
@@ -33,13 +33,13 @@ void show(const sim::StepLog& log) {
   for (std::uint64_t i = 0; i < steps; ++i) {
     require(!log.step(i).is_null(), "each step has a detail");
     require(!log.step(i).dump(-1, ' ', false, kReplace).empty(), "a detail is text");
-    for (const hal::Event& event : log.events_of(i))
-      require(!sim::log_json(event, 0).empty(), "an event is text");
     const sim::LoggedStep step = *log.logged(i);
-    if (step.attitude)
-      require(!sim::transforms_json(*step.attitude, nullptr, 0.0, 0).empty() &&
-                  !sim::figures_json(*step.attitude, nullptr).empty(),
-              "an attitude is text");
+    sim::ShownStep shown;
+    shown.events = log.events_of(i);
+    if (step.attitude) shown.report = &*step.attitude;
+    for (const sim::View view : sim::kViews)
+      for (const std::string& message : sim::messages_of(shown, {}, view))
+        require(!message.empty(), "what is shown is text");
   }
 }
 

@@ -15,8 +15,8 @@
 #include "sim/console/console_server.hpp"
 #include "sim/console/foxglove_session.hpp"
 #include "sim/console/recorded_run.hpp"
+#include "sim/recording/frames_file.hpp"
 #include "sim/sil/domain_lease.hpp"
-#include "sim/sil/frames_file.hpp"
 #include "sim/sil/simulated_steps.hpp"
 #include "tests/sil/sil_test_support.hpp"
 

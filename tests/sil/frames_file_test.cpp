@@ -1,11 +1,11 @@
 // Frames without a flight program as an MCAP file.
-#include "sim/sil/frames_file.hpp"
+#include "sim/recording/frames_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 
-#include "sim/sil/run_steps.hpp"
+#include "sim/recording/run_steps.hpp"
 #include "sim/sil/simulated_steps.hpp"
 #include "tests/sil/sil_test_support.hpp"
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "sim/console/bus_run.hpp"
-#include "sim/sil/run_channels.hpp"
+#include "sim/recording/cdr_sample.hpp"
 #include "tests/sil/sil_test_support.hpp"
 #include "tests/support/growing_run.hpp"
 

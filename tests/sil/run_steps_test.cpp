@@ -1,5 +1,5 @@
 // A run that was recorded, sent again: the flight program comes to the same states.
-#include "sim/sil/run_steps.hpp"
+#include "sim/recording/run_steps.hpp"
 
 #include <gtest/gtest.h>
 

@@ -131,9 +131,10 @@ std::string library_objection(const std::string& file, const std::string& path) 
     return "not a header for the flight side";
   }
   // The bridge to ROS 2 has a domain of its own, apart from the bus of the run.
-  const bool knows_dds = starts_with_any(file, {"hal/dds/", "sim/sil/", "sim/console/ros2", "tests/"});
+  const bool knows_dds = starts_with_any(
+      file, {"hal/dds/", "sim/sil/", "sim/recording/cdr_sample", "sim/console/ros2", "tests/"});
   if (starts_with_any(path, {"dds/", "ddsc/"}) && !knows_dds)
-    return "only hal/dds, sim/sil and the bridge to ROS 2 may include DDS";
+    return "only hal/dds, sim/sil, samples in recordings and the bridge to ROS 2 may include DDS";
   return {};
 }
 

@@ -202,6 +202,7 @@ TEST(IncludeRule, AcceptsAllowedIncludes) {
       {"fsw/programs/desktop/main.cpp", "#include \"hal/dds/flight_bus.hpp\""},
       {"sim/sil/a.cpp", "#include \"hal/dds/idl/topics.hpp\""},
       {"sim/sil/a.cpp", "#include <dds/dds.h>"},
+      {"sim/recording/cdr_sample.cpp", "#include <dds/ddsi/ddsi_cdrstream.h>"},
       {"sim/sil/a.cpp", "#include \"hal/messages/telemetry.hpp\""},
       {"sim/cli/main.cpp", "#include \"cmake/version.hpp\""},
       {"sim/cli/a.cpp", "#include <vector>"},

@@ -29,7 +29,7 @@ std::vector<Vector3f> points_of_sphere(int count) {
 // A sphere of few triangles, whose vertices lie on the true one: all else of it lies inside.
 TriangleMesh coarse_sphere() {
   constexpr int kSides = 12;
-  Silhouette profile;
+  Outline profile;
   for (int i = 0; i <= kSides / 2; ++i) {
     const float angle_rad = 2.0F * static_cast<float>(M_PI) * static_cast<float>(i) / kSides;
     const bool is_pole = i == 0 || i == kSides / 2;

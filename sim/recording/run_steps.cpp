@@ -1,16 +1,14 @@
-#include "sim/sil/run_steps.hpp"
+#include "sim/recording/run_steps.hpp"
 
-#include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "hal/dds/idl/hello.hpp"
+#include "sim/recording/step_samples.hpp"
 
 namespace tumblesight::sim {
 namespace {
 
-constexpr std::uint32_t kFirstPictures = 10;
-constexpr std::uint32_t kLaterPictures = 16;  // evenly spread
+const FrameTruth kUnknownTruth{Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(), 0.0};
 
 }  // namespace
 
@@ -73,21 +71,11 @@ void RunSteps::read_contents() {
   });
   hal::dds::NavigationSample navigation;
   file_.each(navigation, [&](const hal::dds::NavigationSample& sample, const McapReader::Entry&) {
-    RecordedStep* const step = step_of(sample);
-    if (step == nullptr) return;
-    gnc::ChaserAttitude& attitude = step->navigations.emplace_back();
-    attitude.time_ns = sample.time_ns;
-    std::copy(std::begin(sample.q_inertial_lrf), std::end(sample.q_inertial_lrf),
-              attitude.q_inertial_lrf.begin());
-    attitude.valid = sample.valid != 0;
+    if (RecordedStep* const step = step_of(sample)) step->navigations.push_back(attitude_of(sample));
   });
   hal::dds::CommandSample command;
   file_.each(command, [&](const hal::dds::CommandSample& sample, const McapReader::Entry&) {
-    RecordedStep* const step = step_of(sample);
-    if (step == nullptr) return;
-    hal::CommandPacket& packet = step->packets.emplace_back();
-    packet.size = sample.size;
-    std::copy(std::begin(sample.bytes), std::end(sample.bytes), packet.bytes.begin());
+    if (RecordedStep* const step = step_of(sample)) step->packets.push_back(packet_of(sample));
   });
 }
 
@@ -101,24 +89,13 @@ void RunSteps::require_whole_steps() const {
   }
 }
 
-FrameTruth RunSteps::truth_of(const RecordedStep& step) const {
-  FrameTruth truth{Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero(), 0.0};
-  truth.lost = step.frames.empty();
-  if (!step.truth) return truth;
-  const float* const q = step.truth->q_lrf_trf;
-  truth.q_lrf_trf = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
-  const float* const rate = step.truth->rate_lrf_rad_s;
-  truth.rate_lrf_rad_s = Eigen::Vector3d(rate[0], rate[1], rate[2]);
-  truth.range_m = step.truth->range_m;
-  return truth;
-}
-
 SourcedStep RunSteps::next() {
   const std::uint32_t k = next_++;
   const RecordedStep& step = steps_[k];
   SourcedStep sourced;
   sourced.step.time_ns = sourced.input.time_ns = step.sample.time_ns;
-  sourced.step.truth = truth_of(step);
+  sourced.step.truth = step.truth ? frame_truth_of(*step.truth) : kUnknownTruth;
+  sourced.step.truth.lost = step.frames.empty();
   sourced.step.truth_known = step.truth.has_value();
   if (step.truth) {
     sourced.step.sequence = step.truth->sequence_index;
@@ -132,8 +109,7 @@ SourcedStep RunSteps::next() {
   }
   sourced.input.navigations = step.navigations;
   sourced.input.packets = step.packets;
-  const bool is_regular = k % (1 + steps() / kLaterPictures) == 0;
-  sourced.keep_picture = !step.frames.empty() && (frames_sent_ < kFirstPictures || is_regular);
+  sourced.keep_picture = !step.frames.empty() && is_pictured(frames_sent_, k, steps());
   frames_sent_ += static_cast<std::uint32_t>(step.frames.size());
   return sourced;
 }

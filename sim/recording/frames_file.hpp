@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "sim/sil/step_source.hpp"
+#include "sim/recording/step_source.hpp"
 
 namespace tumblesight::sim {
 

@@ -1,4 +1,4 @@
-#include "sim/sil/run_file.hpp"
+#include "sim/recording/run_file.hpp"
 
 #include <algorithm>
 

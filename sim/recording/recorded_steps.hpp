@@ -9,7 +9,7 @@
 
 #include "gnc/lidar/range_image.hpp"
 #include "sim/recording/recording_file.hpp"
-#include "sim/sil/step_source.hpp"
+#include "sim/recording/step_source.hpp"
 
 namespace tumblesight::sim {
 
@@ -39,7 +39,6 @@ class RecordedSteps final : public StepSource {
 
  private:
   void take_frame(SourcedStep& sourced);
-  bool is_pictured(std::size_t frame) const;
 
   const RecordingFile& file_;
   const std::vector<std::optional<RecordedTruth>>& truth_;

@@ -1,10 +1,9 @@
-#include "sim/sil/cdr_sample.hpp"
+#include "sim/recording/cdr_sample.hpp"
 
 #include <dds/ddsi/ddsi_cdrstream.h>
+#include <dds/ddsi/ddsi_serdata.h>
 
-#include <algorithm>
 #include <cstring>
-#include <iterator>
 #include <memory>
 
 namespace tumblesight::sim {
@@ -40,6 +39,20 @@ bool read_cdr(const hal::dds::Topic& topic, const std::uint8_t* bytes, std::size
   return true;
 }
 
+bool take_cdr(dds_entity_t reader, std::vector<std::uint8_t>& bytes) {
+  for (;;) {
+    ddsi_serdata* sample = nullptr;
+    dds_sample_info_t info;
+    if (dds_takecdr(reader, &sample, 1, &info, DDS_ANY_STATE) <= 0) return false;
+    if (info.valid_data) {
+      bytes.resize(ddsi_serdata_size(sample));
+      ddsi_serdata_to_ser(sample, 0, bytes.size(), bytes.data());
+    }
+    ddsi_serdata_unref(sample);
+    if (info.valid_data) return true;
+  }
+}
+
 std::vector<std::uint8_t> cdr_of(const hal::dds::Topic& topic, const void* sample) {
   std::vector<std::uint8_t> bytes{0, kLittleEndian, 0, 0};
   dds_ostreamLE_t stream;
@@ -51,16 +64,6 @@ std::vector<std::uint8_t> cdr_of(const hal::dds::Topic& topic, const void* sampl
   bytes[3] = static_cast<std::uint8_t>((4 - bytes.size() % 4) % 4);
   bytes.resize(bytes.size() + bytes[3]);
   return bytes;
-}
-
-gnc::RangeImage frame_of(const hal::dds::LidarFrameSample& sample) {
-  gnc::RangeImage frame{};
-  frame.rays = sample.rays;
-  frame.fov_urad = sample.fov_urad;
-  frame.sequence_number = sample.sequence_number;
-  frame.exposure_time_ns = sample.exposure_time_ns;
-  std::copy(std::begin(sample.ranges), std::end(sample.ranges), frame.ranges.begin());
-  return frame;
 }
 
 }  // namespace tumblesight::sim

@@ -1,11 +1,12 @@
 // StepSource: where the steps of a run come from: simulated sequences or a recording.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 
 #include "sim/operations/fault_table.hpp"
-#include "sim/sil/sil_session.hpp"
+#include "sim/recording/run_step.hpp"
 
 namespace tumblesight::sim {
 
@@ -14,6 +15,12 @@ struct SourcedStep {
   StepInput input;            // frames, attitudes of the chaser and commands; valid until the next step
   bool keep_picture = false;  // the frame belongs to SilRunResult::pictures
 };
+
+// Whether a frame is one of a recording's pictures: the first ten, and sixteen more evenly spread. `place`:
+// of `places` along the recording.
+inline bool is_pictured(std::size_t frame, std::size_t place, std::size_t places) {
+  return frame < 10 || place % (1 + places / 16) == 0;
+}
 
 class StepSource {
  public:

@@ -1,4 +1,4 @@
-#include "sim/sil/recorded_steps.hpp"
+#include "sim/recording/recorded_steps.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -13,8 +13,6 @@ constexpr std::int64_t kLeastStep_ns = 1'000'000;
 constexpr std::int64_t kPause_ns = 8 * kFramePeriod_ns;              // LongestCoast_ms at the start
 constexpr std::int64_t kLargestTime_ns = 3'000'000'000'000'000'000;  // 95 years
 constexpr std::size_t kMaxCycles = 1'000'000;
-constexpr std::size_t kFirstPictures = 10;
-constexpr std::size_t kLaterPictures = 16;  // evenly spread
 
 [[noreturn]] void refuse(std::size_t frame, const FrameStamp& stamp, const std::string& what) {
   throw std::runtime_error("frame " + std::to_string(frame + 1) + " of the recording, sequence number " +
@@ -80,7 +78,7 @@ void RecordedSteps::take_frame(SourcedStep& sourced) {
   recording_.read_next(*frame_);
   sourced.input.frames = {frame_.get()};
   if (recording_.chaser_attitude().valid) sourced.input.navigations = {recording_.chaser_attitude()};
-  sourced.keep_picture = is_pictured(next_frame_);
+  sourced.keep_picture = is_pictured(next_frame_, next_frame_, file_.frames.size());
   FrameTruth& truth = sourced.step.truth;
   truth.lost = false;
   if (next_frame_ < truth_.size() && truth_[next_frame_]) {
@@ -96,11 +94,6 @@ void RecordedSteps::take_frame(SourcedStep& sourced) {
   }
   last_frame_ns_ = sourced.step.time_ns;
   ++next_frame_;
-}
-
-bool RecordedSteps::is_pictured(std::size_t frame) const {
-  const std::size_t stride = 1 + file_.frames.size() / kLaterPictures;
-  return frame < kFirstPictures || frame % stride == 0;
 }
 
 }  // namespace tumblesight::sim

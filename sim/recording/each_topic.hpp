@@ -1,12 +1,7 @@
-// RunChannels: the channels that every recording of a run has: the topics of the bus, unchanged, and messages
-// that viewers show without set-up (foxglove_messages.hpp).
+// Every topic of the bus, by its type.
 #pragma once
 
-#include <map>
-#include <string>
-
 #include "hal/dds/idl/topics.hpp"
-#include "sim/recording/mcap_writer.hpp"
 
 namespace tumblesight::sim {
 
@@ -30,15 +25,5 @@ void each_topic(const Visit& visit) {
   visit(TypeOf<hal::dds::StepDoneSample>(), "StepDone");
   visit(TypeOf<hal::dds::TruthSample>(), "Truth");
 }
-
-struct RunChannels {
-  explicit RunChannels(McapWriter& file);
-
-  std::map<const hal::dds::Topic*, McapId> of_bus;
-  McapId points, transforms, log, figures;
-};
-
-// The oldest sample of a reader as it came: encapsulation header and CDR. False: there is none.
-bool take_cdr(dds_entity_t reader, std::vector<std::uint8_t>& bytes);
 
 }  // namespace tumblesight::sim

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/recording/cdr_sample.hpp"
 #include "sim/recording/mcap_reader.hpp"
-#include "sim/sil/cdr_sample.hpp"
 
 namespace tumblesight::sim {
 

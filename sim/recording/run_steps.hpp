@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/sil/run_file.hpp"
-#include "sim/sil/step_source.hpp"
+#include "sim/recording/run_file.hpp"
+#include "sim/recording/step_source.hpp"
 #include "sim/world/frame_renderer.hpp"
 
 namespace tumblesight::sim {
@@ -49,7 +49,6 @@ class RunSteps final : public StepSource {
   void read_steps();
   void read_contents();
   void require_whole_steps() const;
-  FrameTruth truth_of(const RecordedStep& step) const;
 
   RunFile file_;
   std::string target_;

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "gnc/lidar/range_image.hpp"
 #include "hal/dds/idl/topics.hpp"
 
 namespace tumblesight::sim {
@@ -21,14 +20,14 @@ template <class Sample>
   return read_cdr(hal::dds::topic_of<Sample>(), bytes, size, &sample);
 }
 
+// The oldest sample of a reader as it came: encapsulation header and CDR. False: there is none.
+bool take_cdr(dds_entity_t reader, std::vector<std::uint8_t>& bytes);
+
 // Little-endian.
 std::vector<std::uint8_t> cdr_of(const hal::dds::Topic& topic, const void* sample);
 template <class Sample>
 std::vector<std::uint8_t> cdr_of(const Sample& sample) {
   return cdr_of(hal::dds::topic_of<Sample>(), &sample);
 }
-
-// A frame as its sample has it.
-gnc::RangeImage frame_of(const hal::dds::LidarFrameSample& sample);
 
 }  // namespace tumblesight::sim

@@ -1,12 +1,12 @@
-#include "sim/sil/foxglove_messages.hpp"
+#include "sim/recording/foxglove_messages.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "hal/messages/event_text.hpp"
-#include "sim/sil/sil_run.hpp"
-#include "sim/sil/viewed_frame.hpp"
+#include "sim/recording/run_step.hpp"
+#include "sim/recording/viewed_frame.hpp"
 
 namespace tumblesight::sim {
 namespace {
@@ -62,53 +62,7 @@ double angle_deg(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
   return kDegrees * a.angularDistance(b);
 }
 
-}  // namespace
-
-const FoxgloveSchema& point_cloud_schema() {
-  static const FoxgloveSchema schema{"foxglove.PointCloud", R"({"type":"object","properties":{
-"timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},
-"frame_id":{"type":"string"},
-"pose":{"type":"object","properties":{
-"position":{"type":"object","properties":{"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"}}},
-"orientation":{"type":"object","properties":{
-"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"},"w":{"type":"number"}}}}},
-"point_stride":{"type":"integer"},
-"fields":{"type":"array","items":{"type":"object","properties":{
-"name":{"type":"string"},"offset":{"type":"integer"},"type":{"type":"integer"}}}},
-"data":{"type":"string","contentEncoding":"base64"}}})"};
-  return schema;
-}
-
-const FoxgloveSchema& transforms_schema() {
-  static const FoxgloveSchema schema{"foxglove.FrameTransforms", R"({"type":"object","properties":{
-"transforms":{"type":"array","items":{"type":"object","properties":{
-"timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},
-"parent_frame_id":{"type":"string"},"child_frame_id":{"type":"string"},
-"translation":{"type":"object","properties":{
-"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"}}},
-"rotation":{"type":"object","properties":{
-"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"},"w":{"type":"number"}}}}}}}})"};
-  return schema;
-}
-
-const FoxgloveSchema& log_schema() {
-  static const FoxgloveSchema schema{"foxglove.Log", R"({"type":"object","properties":{
-"timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},
-"level":{"type":"integer"},"message":{"type":"string"},"name":{"type":"string"},"file":{"type":"string"},
-"line":{"type":"integer"}}})"};
-  return schema;
-}
-
-const FoxgloveSchema& figures_schema() {
-  static const FoxgloveSchema schema{"tumblesight.Figures", R"({"type":"object","properties":{
-"network_error_deg":{"type":"number"},"network_expected_error_deg":{"type":"number"},
-"pose_error_deg":{"type":"number"},"pose_sigma_deg":{"type":"number"},
-"true_range_m":{"type":"number"},"pose_range_m":{"type":"number"},
-"true_rate_deg_s":{"type":"number"},"pose_rate_deg_s":{"type":"number"},
-"valid":{"type":"boolean"},"verified":{"type":"boolean"}}})"};
-  return schema;
-}
-
+// The frame "lrf" is the LiDAR frame: +x right, +y boresight, +z up.
 std::string point_cloud_json(const gnc::RangeImage& frame, std::int64_t time_ns) {
   Json fields = Json::array();
   for (std::size_t i = 0; i < kPointFloats; ++i)
@@ -124,18 +78,23 @@ std::string point_cloud_json(const gnc::RangeImage& frame, std::int64_t time_ns)
       .dump();
 }
 
-std::string transforms_json(const hal::AttitudeReport& report, const FrameTruth* truth, double swath_m,
-                            std::int64_t time_ns) {
+// "lrf" to the target at its true attitude ("target_true"), and to where the flight program has it: at the
+// attitude of the network ("target_network") and at the registered pose ("target_pose"), if there is one.
+std::string transforms_json(const ShownStep& step, const ShownTime& time) {
+  // Where the target was when the points were measured: in a free run the answer comes cycles later.
+  const bool has_attitude = step.report != nullptr && gives_attitude(*step.report);
+  const std::int64_t time_ns = time(has_attitude ? step.report->exposure_time_ns : step.time_ns);
   Json transforms = Json::array();
-  if (truth != nullptr && is_known(truth->range_m)) {
-    const Eigen::Vector3d origin_m(swath_m * truth->offset_swaths.x(), truth->range_m,
-                                   swath_m * truth->offset_swaths.y());
-    transforms.push_back(transform("target_true", {truth->q_lrf_trf, origin_m}, time_ns));
+  if (step.truth != nullptr && is_known(step.truth->range_m)) {
+    const Eigen::Vector2d offset_m = step.swath_m * step.truth->offset_swaths;
+    const Eigen::Vector3d origin_m(offset_m.x(), step.truth->range_m, offset_m.y());
+    transforms.push_back(transform("target_true", {step.truth->q_lrf_trf, origin_m}, time_ns));
   }
-  if (const auto pose = network_pose(report))
-    transforms.push_back(transform("target_network", *pose, time_ns));
-  if (const auto pose = registered_pose(report))
-    transforms.push_back(transform("target_pose", *pose, time_ns));
+  if (has_attitude) {
+    transforms.push_back(transform("target_network", *network_pose(*step.report), time_ns));
+    if (const auto pose = registered_pose(*step.report))
+      transforms.push_back(transform("target_pose", *pose, time_ns));
+  }
   return Json{{"transforms", transforms}}.dump();
 }
 
@@ -152,6 +111,9 @@ std::string log_json(const hal::Event& event, std::int64_t time_ns) {
       .dump();
 }
 
+// Errors in degrees, of the network and of the pose, with what the flight program expects of them; range
+// along the boresight and rate; whether the attitude is valid and the pose verified. What is not known is
+// left out.
 std::string figures_json(const hal::AttitudeReport& report, const FrameTruth* truth) {
   Json figures{{"valid", report.validity == hal::Validity::kValid},
                {"verified", gives_attitude(report) && report.pose_doubts == 0}};
@@ -173,6 +135,65 @@ std::string figures_json(const hal::AttitudeReport& report, const FrameTruth* tr
   if (is_known(truth->rate_lrf_rad_s.x()))
     figures["true_rate_deg_s"] = kDegrees * truth->rate_lrf_rad_s.norm();
   return figures.dump();
+}
+
+// By View.
+const std::array<ShownChannel, kViews.size()> kChannels{{
+    {"/lidar/points", "foxglove.PointCloud", R"({"type":"object","properties":{
+"timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},
+"frame_id":{"type":"string"},
+"pose":{"type":"object","properties":{
+"position":{"type":"object","properties":{"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"}}},
+"orientation":{"type":"object","properties":{
+"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"},"w":{"type":"number"}}}}},
+"point_stride":{"type":"integer"},
+"fields":{"type":"array","items":{"type":"object","properties":{
+"name":{"type":"string"},"offset":{"type":"integer"},"type":{"type":"integer"}}}},
+"data":{"type":"string","contentEncoding":"base64"}}})"},
+    {"/tf", "foxglove.FrameTransforms", R"({"type":"object","properties":{
+"transforms":{"type":"array","items":{"type":"object","properties":{
+"timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},
+"parent_frame_id":{"type":"string"},"child_frame_id":{"type":"string"},
+"translation":{"type":"object","properties":{
+"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"}}},
+"rotation":{"type":"object","properties":{
+"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"},"w":{"type":"number"}}}}}}}})"},
+    {"/events", "foxglove.Log", R"({"type":"object","properties":{
+"timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},
+"level":{"type":"integer"},"message":{"type":"string"},"name":{"type":"string"},"file":{"type":"string"},
+"line":{"type":"integer"}}})"},
+    {"/figures", "tumblesight.Figures", R"({"type":"object","properties":{
+"network_error_deg":{"type":"number"},"network_expected_error_deg":{"type":"number"},
+"pose_error_deg":{"type":"number"},"pose_sigma_deg":{"type":"number"},
+"true_range_m":{"type":"number"},"pose_range_m":{"type":"number"},
+"true_rate_deg_s":{"type":"number"},"pose_rate_deg_s":{"type":"number"},
+"valid":{"type":"boolean"},"verified":{"type":"boolean"}}})"},
+}};
+
+}  // namespace
+
+const ShownChannel& shown_channel(View view) {
+  return kChannels.at(static_cast<std::size_t>(view));
+}
+
+std::vector<std::string> messages_of(const ShownStep& step, const ShownTime& time, View view) {
+  const std::int64_t time_ns = time(step.time_ns);
+  std::vector<std::string> messages;
+  switch (view) {
+    case View::kPoints:
+      for (const gnc::RangeImage* frame : step.frames) messages.push_back(point_cloud_json(*frame, time_ns));
+      break;
+    case View::kTransforms:
+      if (step.report != nullptr || step.truth != nullptr) messages.push_back(transforms_json(step, time));
+      break;
+    case View::kLog:
+      for (const hal::Event& event : step.events) messages.push_back(log_json(event, time_ns));
+      break;
+    case View::kFigures:
+      if (step.report != nullptr) messages.push_back(figures_json(*step.report, step.truth));
+      break;
+  }
+  return messages;
 }
 
 }  // namespace tumblesight::sim

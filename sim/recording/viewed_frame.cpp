@@ -1,10 +1,10 @@
-#include "sim/sil/viewed_frame.hpp"
+#include "sim/recording/viewed_frame.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstring>
 
-#include "sim/sil/sil_run.hpp"
+#include "sim/recording/run_step.hpp"
 
 namespace tumblesight::sim {
 namespace {
