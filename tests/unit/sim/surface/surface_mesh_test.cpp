@@ -24,7 +24,7 @@ using Eigen::Vector3f;
 using gnc::SurfaceMesh;
 
 TriangleMesh ball(double radius_m, int sides) {
-  Silhouette profile;
+  Outline profile;
   for (int i = 0; i <= sides / 2; ++i) {
     const double angle_rad = 2.0 * M_PI * i / sides;
     const bool pole = i == 0 || i == sides / 2;
