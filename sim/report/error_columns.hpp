@@ -1,5 +1,5 @@
-// The figures of errors and of registered poses, each described once. CSV, JSON, terminal, Markdown and HTML all go by these
-// lists, so that a new figure is one new entry here.
+// The figures of errors and of registered poses, each described once. CSV, JSON, terminal, Markdown and HTML
+// all go by these lists, so that a new figure is one new entry here.
 #pragma once
 
 #include <optional>

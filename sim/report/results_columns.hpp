@@ -1,5 +1,5 @@
-// The columns of results, each described once: CSV, terminal, Markdown and HTML go by these lists, so that a new column is one
-// new entry here. The figures are those of error_columns.hpp.
+// The columns of results, each described once: CSV, terminal, Markdown and HTML go by these lists, so that a
+// new column is one new entry here. The figures are those of error_columns.hpp.
 #pragma once
 
 #include <cstdint>

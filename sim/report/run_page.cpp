@@ -8,8 +8,8 @@
 #include "sim/evaluation/results.hpp"
 #include "sim/evaluation/statistics.hpp"
 #include "sim/host/text.hpp"
-#include "sim/report/page.hpp"
 #include "sim/report/error_tables.hpp"
+#include "sim/report/page.hpp"
 #include "sim/report/svg.hpp"
 
 namespace tumblesight::sim {

@@ -45,7 +45,7 @@ std::string from_base64(const std::string& text, std::size_t begin, const std::s
 }
 
 std::string external_file(const fs::path& folder, const std::string& uri, std::uint64_t size,
-                       const std::string& where) {
+                          const std::string& where) {
   const std::string named = where + " is the file " + shown_text(decoded_uri(uri)) + ", ";
   if (decoded_uri(uri).find('\0') != std::string::npos)
     refuse(where + " is at " + shown_text(uri) +
