@@ -320,8 +320,8 @@ void flip_a_constant() {
   for (std::size_t bit = 8 * 300; app.estimator().constants_crc32() == before; ++bit) region.flip(bit);
 }
 void damage_tables() {
-  AppMemory::guard(app).flip(8 * 40);
-  AppMemory::guard(app).flip(8 * (40 + 4 * ModelBanks::kBlocks));
+  AppMemory::scrubber(app).flip(8 * 40);
+  AppMemory::scrubber(app).flip(8 * (40 + 4 * ModelBanks::kBlocks));
 }
 
 void steps_with_a_frame() {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "sim/host/text.hpp"
+#include "sim/report/error_tables.hpp"
 #include "tests/support/sample_results.hpp"
 
 namespace tumblesight::sim {
