@@ -14,14 +14,18 @@ install(FILES fsw/models/near_shoemaker.float32.tsm DESTINATION ${data_folder}/m
 install(PROGRAMS hal/dds/make_security DESTINATION ${data_folder} COMPONENT tumblesight)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tumblesight)
 # Documents that only repeat what code and tests say: the packets for ground systems, and what verifies each requirement.
-find_package(Python3 REQUIRED COMPONENTS Interpreter)
-foreach(document xtce:tumblesight.xtce.xml check_requirements:verification.md)
-  string(REGEX MATCH "(.*):(.*)" document ${document})
-  set(file ${PROJECT_BINARY_DIR}/documents/${CMAKE_MATCH_2})
-  install(CODE "execute_process(COMMAND ${Python3_EXECUTABLE} -B
-    ${PROJECT_SOURCE_DIR}/tests/documents/${CMAKE_MATCH_1}.py --write ${file} COMMAND_ERROR_IS_FATAL ANY)" COMPONENT tumblesight)
-  install(FILES ${file} DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs COMPONENT tumblesight)
-endforeach()
+find_package(Python3 QUIET COMPONENTS Interpreter)
+if(Python3_Interpreter_FOUND)
+  foreach(document xtce:tumblesight.xtce.xml check_requirements:verification.md)
+    string(REGEX MATCH "(.*):(.*)" document ${document})
+    install(CODE "
+      set(document \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}/docs/${CMAKE_MATCH_2}\")
+      execute_process(COMMAND \"${Python3_EXECUTABLE}\" -B
+        \"${PROJECT_SOURCE_DIR}/tests/documents/${CMAKE_MATCH_1}.py\" --write \"\$ENV{DESTDIR}\${document}\"
+        COMMAND_ERROR_IS_FATAL ANY)
+      list(APPEND CMAKE_INSTALL_MANIFEST_FILES \"\${document}\")" COMPONENT tumblesight)
+  endforeach()
+endif()
 install(FILES cmake/README.installed DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME README COMPONENT tumblesight)
 install(FILES LICENSES/Apache-2.0.txt DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT tumblesight)
 install(FILES LICENSES/Apache-2.0.txt DESTINATION ${CMAKE_INSTALL_DOCDIR}-dev RENAME copyright COMPONENT tumblesight-dev)

@@ -85,7 +85,7 @@ packages_to_develop=("${packages_to_watch[@]}" libgtest-dev libgmock-dev python3
 packages_to_test=("${packages_to_train[@]}" "${packages_to_develop[@]}" "${packages_to_export[@]}" libdnnl-dev
   chromium clang clang-format git openmpi-bin slurm-wlm valgrind)
 packages_to_fuzz=("${packages_to_run[@]}" clang libcivetweb-dev libclang-rt-dev python3)
-# The flight side only, with GCC's branch counts.
+# The flight side only, with clang's counts of branches and conditions.
 packages_to_cover=(g++ clang-19 libclang-rt-19-dev llvm-19 cmake ninja-build pkg-config libeigen3-dev libgtest-dev libgmock-dev python3)
 packages_to_analyse=("${packages_to_run[@]}" libgtest-dev libgmock-dev clang clang-tidy cppcheck python3)
 # The processors of the audit: compilers, emulators, and GoogleTest's sources to build it for them.

@@ -115,8 +115,8 @@ struct alignas(8) AppState {
     return {table[Parameter::kEventsOfAKind], table[Parameter::kEventWindow_cycles]};
   }
   // A cycle has at most one long task: the repair of a table or of the constants, or the check of an image
-  // for a command or a switch of banks. Such a cycle estimates no frame, so every step stays within half the
-  // period. False: the cycle has had one; a repair waits for the next cycle, a command is refused.
+  // for a command or a switch of banks. Such a cycle estimates no frame, so every step stays within the time
+  // in docs/audit.md. False: the cycle has had one; a repair waits for the next cycle, a command is refused.
   [[nodiscard]] bool begin_long_task() {
     const bool begins = !long_task;
     long_task = true;

@@ -21,7 +21,9 @@
 //   - on entering RUN, by RESET_SEQUENCE and by the response to a fault;
 //   - when the cycle time goes back;
 //   - with an event, when a frame's exposure is more than LongestCoast_ms after the last used one.
-//     Over shorter times, of any length, the track coasts.
+//     Otherwise the track coasts;
+//   - when another model is activated, and when the chaser's attitude becomes known or is lost
+//   (docs/icd.md 2.3).
 //
 // Cycle times must increase. Otherwise an event is raised, and the frames of the cycle are refused. Its
 // commands are still carried out: they do not depend on the time, and the ground needs them to recover. If

@@ -262,16 +262,17 @@ constexpr std::array kRules{
 #undef TUMBLESIGHT_TELECOMMAND
 
 constexpr bool every_function_has_one_row() {
+  int largest = 0;
   for (std::size_t i = 0; i < kRules.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (kRules[i].function == kRules[j].function) return false;
     }
-    if (kRules[i].max_argument_bytes > hal::kMaxCommandArgumentBytes) return false;
+    largest = gnc::max<int>(largest, kRules[i].max_argument_bytes);
   }
-  return true;
+  return largest == hal::kMaxCommandArgumentBytes;
 }
 static_assert(every_function_has_one_row(),
-              "a function code stands in two rows, or its arguments do not fit a packet");
+              "a function code stands in two rows, or the longest arguments do not fill the largest packet");
 
 // The handler is a constant, so this is a direct call: the analysis of the worst-case stack follows no
 // pointers.

@@ -8,7 +8,12 @@ namespace {
 
 using gnc::FrameVerdict;
 
-// The report passes the tracker's doubts about a pose on as they are.
+// The report passes the tracker's doubts on as they are. An attitude that is unsound has no report.
+static_assert(hal::kDoubtErrorLarge == gnc::kErrorLarge && hal::kDoubtAttitudeJump == gnc::kAttitudeJump &&
+              hal::kDoubtRateAmbiguous == gnc::kRateAmbiguous &&
+              hal::kDoubtChaserUnknown == gnc::kChaserUnknown &&
+              hal::kDoubtChaserNowUnknown == gnc::kChaserNowUnknown &&
+              hal::kDoubtUnexplained == gnc::kUnexplained);
 static_assert(hal::kPoseDoubtUnknown == gnc::kPoseUnknown && hal::kPoseDoubtCoasts == gnc::kPoseCoasts &&
               hal::kPoseDoubtRanges == gnc::kPoseRanges && hal::kPoseDoubtOutline == gnc::kPoseOutline &&
               hal::kPoseDoubtAmbiguous == gnc::kPoseAmbiguous && hal::kPoseDoubtMotion == gnc::kPoseMotion &&

@@ -1,8 +1,8 @@
 // MemoryScrubber: finds bit flips in the estimator's memory since the last cycle and repairs them. Its time
 // is bounded: the parameter ScrubBlocks limits the model blocks checked per cycle, and a cycle has at most
-// one of the repairs marked *, AppState::begin_long_task(). What is still corrupted is found again and
-// repaired in the next cycle, and no frame is estimated meanwhile. Everything is repaired within
-// kMostRepairCycles.
+// one of the long repairs marked *, which AppState::begin_long_task() grants. What is still corrupted is
+// found again and repaired in the next cycle, and no frame is estimated meanwhile. Everything is repaired
+// within kMostRepairCycles.
 //
 //   corrupted                      found by                        repaired from
 //   state of LSTM and track        CRC of the last cycle           copy of the last cycle; reset if the copy
@@ -24,14 +24,14 @@ namespace tumblesight::fsw {
 
 class MemoryScrubber {
  public:
-  // The tables of both banks and the constants, one in each cycle.
+  // Two tables of banks and the constants, one per cycle.
   static constexpr int kMostRepairCycles = 3;
 
   // Call after the image of a bank has passed every check.
   void bank_is_good(std::uint32_t bank, AppState& state);
   // Call after a model has been activated.
   void model_activated(const Estimator& estimator, AppState& state);
-  // Resets what is out of range in the state and indexes an array or limits a loop, because majority voting
+  // Resets values of the state that index an array or limit a loop if they are out of range: majority voting
   // cannot correct the same bit in two copies. False: something, or the mode, was out of range.
   [[nodiscard]] static bool bound(const Estimator& estimator, AppState& state);
   // At the start of a cycle. Damage that cannot be repaired is set in state.faults_seen.

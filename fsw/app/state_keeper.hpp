@@ -4,15 +4,15 @@
 // Both copies of the store hold the newest record, one written after the other, so that a reset during a
 // write leaves one intact record, and a later bit flip in one copy does no harm. The copy that holds the
 // newest record is written last, also after several resets in a row. A write is read back. Every
-// kStoreCheck_cycles both copies are read again. A copy that does not hold the newest record is written
-// again: in each of the first kMostFailingCycles cycles, with each new record, and at each check.
+// kStoreCheck_cycles both copies are read again. A copy that does not hold the newest record is rewritten in
+// every cycle for kMostFailingCycles cycles, then with each new record and at each check.
 //
 // The store is given up when no copy could be written in kMostFailingCycles consecutive cycles. The
 // application then works as if there were no store, so that the ground can command it, and tries again at
 // each check. Until a try succeeds, a change that a reset would undo is reported.
 //
-// At boot the counter is the highest one of all good heads, and the key slot that of the newest good head.
-// Everything else is that of the newest good body.
+// At boot the counter is the highest one of all good heads (stored_state.hpp), and the key slot that of the
+// newest good head. Everything else is that of the newest good body.
 //
 // The mode after a reset:
 //   stored                 normal reset    abnormal reset (hal::is_abnormal)
@@ -38,9 +38,9 @@ class StateKeeper {
   // its initial value; the key slot is then the lowest one with a key. The result is kept in
   // AppState::resumption.
   void resume();
-  // The cause of the first mode, if a good model was found.
+  // Why the first mode after boot is what it is, if a good model was found.
   Cause boot_cause() const;
-  // In the first step after it: reports the result of resume(). If no copy had a good head, it reads both
+  // In the first step after boot: reports the result of resume(). If no copy had a good head, it reads both
   // again and resumes what can be read, except for mode and bank.
   void report_resumption();
 

@@ -26,6 +26,7 @@ constexpr std::array<std::uint32_t tumblesight_parameters::*, kParameters> kFiel
     &tumblesight_parameters::event_window_cycles,
     &tumblesight_parameters::longest_without_chaser_ms,
 };
+static_assert(kFields.back() != nullptr, "a parameter is missing here");
 
 constexpr std::array<const char*, kTableFields> kNames{
 #define TUMBLESIGHT_PARAMETER(name, lowest, highest, initial) #name,

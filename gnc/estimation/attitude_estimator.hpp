@@ -38,7 +38,7 @@ struct AttitudeEstimate {
   // The target has turned by more than kLargestTurn_rad since the last frame, so that the rate may be another
   // one that leads to the same attitude.
   bool rate_is_ambiguous = false;
-  int motion_model = kSpinModel;  // of motion, that gives the attitude and the rate
+  int motion_model = kSpinModel;  // that gives the attitude and the rate
   // The likeliest hypothesis of this frame that is another attitude than q_lrf_trf, and its probability over
   // that of the hypotheses that are the same attitude. Odds of 0: there is none.
   QuaternionQ30 q_lrf_trf_second = kIdentityQ30;

@@ -1,16 +1,16 @@
-// FrameTracker: the way of a frame through admission, estimator and attitude checks to an attitude and its
-// validity. Pure: the flight application and the evaluation on the ground call the same function.
+// FrameTracker processes one frame: it admits the frame, runs the estimator, checks the attitude and
+// propagates it to the time of the cycle. Pure: the flight application and the evaluation on the ground call
+// the same function.
 //
 //   admission   time and order (frame_gate.hpp); a frame that repeats one of the last eight used
 //               ones (frame_signature.hpp) is refused before the estimator sees it, across gaps and resets
 //   gap         the track coasts over the time since the last used frame; after more than longest_coast_ns it
 //               is given up, and the frame starts a new one
-//   chaser      a track of the first kind turns with the LRF, by the attitudes of the chaser at both
-//               exposures. In a track of the second kind the chaser is taken not to turn, and each outcome
-//               says so. In a track of the first kind a frame without the attitude is refused; after more
-//               than longest_without_chaser_ns it starts a track of the second kind. There a frame with the
-//               attitude starts a track of the first kind. A single unknown turn of 13 degrees in a track
-//               would spoil its rate for the next ten frames
+//   chaser      a track with the chaser's attitude turns with the LRF, by the attitudes at both exposures. A
+//               track without it assumes a chaser that does not turn, and each outcome says so. A track with
+//               it refuses a frame without it; after more than longest_without_chaser_ns such a frame starts
+//               a track without. In a track without, a frame with the attitude starts a track with it. A
+//               single unknown turn of 13 degrees would spoil the rate for the next ten frames
 //   checks      expected error, distance from the attitude that the track predicted, and how much of the
 //               frame the target explains at the attitude
 #pragma once
@@ -37,13 +37,13 @@ struct FrameTrackerLimits {
 // What is kept from frame to frame, beside the estimator's state.
 struct FrameTrackerState {
   FrameGate gate;
-  QuaternionQ30 q_inertial_lrf = kIdentityQ30;  // at the last used frame with the chaser's attitude
+  QuaternionQ30 q_inertial_lrf = kIdentityQ30;  // of the LiDAR, at the last used frame for which it was known
   bool has_chaser_attitude = false;             // q_inertial_lrf is that of the last used frame
-  bool has_jumped = false;                      // the attitude of the last used frame
+  bool has_jumped = false;                      // the last attitude was a jump
   bool has_found_rate = false;                  // of the track: two frames were close enough in time
   FrameHistory history;                         // of the used frames
 
-  // The estimator was reset: its next attitude has no last one, to be compared with or to turn from.
+  // The estimator was reset: its next attitude has no predecessor to compare with.
   void forget_track() { has_jumped = has_chaser_attitude = false; }
   // The times and numbers of earlier frames say nothing about the next one. The history still does.
   void forget_times() {
@@ -88,7 +88,7 @@ struct FrameOutcome {
   std::uint32_t numbers_skipped = 0;       // FrameGate::numbers_skipped()
   std::uint32_t frames_given_up = 0;       // of the track that ends before this frame; 0: none does
   bool finds_no_rate = false;              // finds_no_rate(): no jump check
-  bool chaser_changed = false;  // it ends because the chaser's attitude is known from now on, or no more
+  bool chaser_changed = false;             // it ends because the chaser's attitude became known or unknown
   AttitudeEstimate estimate;
   // At the time of the cycle, in the LRF of that time; with kChaserNowUnknown in that of the exposure. Not if
   // the attitude is unsound.

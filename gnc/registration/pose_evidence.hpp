@@ -1,5 +1,5 @@
-// PoseEvidence: what speaks against a pose, by the rays of a frame. It compares alternatives and verifies the
-// pose that is reported. Specification: docs/numerics.md.
+// PoseEvidence: counts of the rays of a frame that agree with a pose and that contradict it. It compares
+// alternatives and verifies the pose that is reported. Specification: docs/numerics.md.
 #pragma once
 
 #include <cstdint>
@@ -27,13 +27,13 @@ struct PoseEvidence {
   // About 1 at the right pose, at most 9; 0 without a block.
   std::int32_t mean_square_q8() const;
   std::uint32_t unexplained_ppm() const;  // of the returns
-  std::uint32_t missing_ppm() const;      // and dark, of the drawn and dark rays
+  std::uint32_t missing_ppm() const;      // (missing + dark) / (drawn + dark)
   // Negative logarithm of the likelihood, up to a constant of the frame [nats].
   std::int32_t cost_q8() const;
 
   // At most 1.6 sigma^2 in the mean, of one block or more.
   bool fits_ranges() const;
-  // At most 3 % of the returns are beside the target, and 69 % of its rays are missing or dark.
+  // At most 3 % of the returns are beside the target, and at most 69 % of its rays are missing or dark.
   bool fits_returns() const;
   // The silhouette is where the frame shows one, within `halves` / 2 of the limit: at most an eighth of the
   // rays at it are not as drawn. As many returns as elsewhere may be missing: of the half of these rays that

@@ -31,7 +31,9 @@ inline constexpr PoseDoubts kPoseCoasts = 2;   // predicted: the frame could not
 inline constexpr PoseDoubts kPoseRanges = 4;   // the ranges do not lie on the surface
 // Returns beside the surface, too many missing, or its silhouette elsewhere.
 inline constexpr PoseDoubts kPoseOutline = 8;
-inline constexpr PoseDoubts kPoseAmbiguous = 16;  // the conservative LLR is small
+// The conservative log-likelihood ratio is small, another attitude explains this frame better, or the work
+// budget was exhausted.
+inline constexpr PoseDoubts kPoseAmbiguous = 16;
 // Fewer than three poses, they contradict one motion, or they are too far apart to tell the rate.
 inline constexpr PoseDoubts kPoseMotion = 32;
 inline constexpr PoseDoubts kPoseUncertain = 64;  // the attitude is known to a degree at best

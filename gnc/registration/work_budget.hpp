@@ -1,10 +1,9 @@
-// WorkBudget: how much work the registration of one frame may take, whatever image and frame ask for.
+// WorkBudget: how much work the registration of one frame may take, for any model image and any frame.
 //
 // Work is counted in instructions, at prices that the LEON3 of docs/audit.md does not exceed: vertices,
 // triangles, rows and rays that are drawn, blocks that are compared, edges and places that are followed. It
-// is the same for the same inputs on every processor. What is done is taken from the budget; when nothing is
-// left, each part ends at once. The refinement that was under way means nothing then, and the frame is
-// doubtful.
+// is the same for the same inputs on every processor. Each part charges its work and stops when the budget is
+// empty. The result of the refinement that was under way is then not used, and the frame is doubtful.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +19,8 @@ namespace work {
 // rays.
 inline constexpr std::int32_t kDrawing = 45'000, kVertex = 125, kTriangle = 125, kFront = 495, kRow = 74,
                               kRay = 15;
-// A look at what is dark, likewise, and per triangle that is the nearest at a ray, per one of them that is
-// judged by its angle of incidence, per triangle that is taken out and its rows and rays.
+// A search for dark surfaces: the same, and per triangle that is the nearest at a ray, per one of them that
+// is judged by its angle of incidence, per triangle that is taken out and its rows and rays.
 inline constexpr std::int32_t kDarkLook = 50'000, kDarkTriangle = 130, kDarkFront = 360, kDarkRow = 85,
                               kDarkRay = 40, kDarkSeen = 300, kDarkAngle = 400, kTakenOut = 260,
                               kTakenRow = 122, kTakenRay = 20;
@@ -31,7 +30,7 @@ inline constexpr std::int32_t kRanges = 40'000, kBlock = 130, kCompared = 600;
 // column, per ray to either side of a place.
 inline constexpr std::int32_t kSilhouette = 60'000, kEdge = 87, kSilhouetteEdge = 190, kPlace = 185,
                               kAcross = 85, kEquation = 570;
-// What a step takes besides, and a table of the silhouette; a refinement, with the evidence at its end.
+// A step beside its fits; a table of the silhouette; a refinement, with the evidence at its end.
 inline constexpr std::int32_t kStep = 100'000, kTable = 251'000, kRefinement = 270'000;
 // A placement besides its rendering, and its search.
 inline constexpr std::int32_t kPlacement = 600'000, kSearch = 1'100'000;
@@ -46,10 +45,10 @@ class WorkBudget {
  public:
   static constexpr std::int32_t kOfAFrame = 91'000'000;
 
-  // Until it begins, there is no limit that a frame could reach.
+  // Before this call the budget is larger than any frame needs.
   void begin(std::int32_t budget) { left_ = max(budget, 0); }
-  // False: so much is not left, and from now on nothing is. Most work is charged before it is begun. What is
-  // charged afterwards exceeds the budget by one triangle or edge at most, 1 M.
+  // False: not enough is left, and the budget is exhausted from now on. Most work is charged before it is
+  // begun. What is charged afterwards exceeds the budget by one triangle or edge at most, 1 M.
   bool spend(std::int32_t work) {
     left_ = work > left_ ? kExhausted : left_ - work;
     return !is_exhausted();

@@ -12,8 +12,7 @@
 //        -   6 T  triangles: three numbers of vertices, counterclockwise as seen from the side that reflects;
 //                 what reflects on both sides is there twice
 //        -   8 E  edges that can lie on a silhouette: the two ends, then the corners opposite to it of the
-//        two
-//                 triangles that share it. The same corner twice: only one triangle has it
+//                 two triangles that share it. The same corner twice: only one triangle has it
 #pragma once
 
 #include <array>

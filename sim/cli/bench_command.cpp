@@ -60,8 +60,8 @@ std::unique_ptr<FixedPointModel> fixed_point_model(const std::vector<std::uint8_
 
 // A runtime that is not installed is reported and left out; one whose outputs differ ends the run.
 template <class Model>
-void bench_one_peer(const std::unique_ptr<Runtime>& runtime, const std::string& reason, const Model& model,
-                    const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
+void bench_one_runtime(const std::unique_ptr<Runtime>& runtime, const std::string& reason, const Model& model,
+                       const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
   if (runtime == nullptr) {
     print_note("left out: " + reason);
     return;
@@ -70,12 +70,12 @@ void bench_one_peer(const std::unique_ptr<Runtime>& runtime, const std::string& 
   rows.push_back(bench_runtime(*runtime, model, frames));
 }
 
-void bench_peers(const BenchArguments& arguments, const BenchImages& images,
-                 const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
+void bench_runtimes(const BenchArguments& arguments, const BenchImages& images,
+                    const std::vector<gnc::RangeImage>& frames, std::vector<BenchRow>& rows) {
   const std::unique_ptr<FixedPointModel> fixed = fixed_point_model(images.fixed);
   std::string reason;
   const auto add = [&](const std::unique_ptr<Runtime>& runtime, const auto& model) {
-    bench_one_peer(runtime, reason, model, frames, rows);
+    bench_one_runtime(runtime, reason, model, frames, rows);
   };
   add(make_onnx_runtime_int8(*fixed, arguments.onnxruntime, reason), *fixed);
   add(make_onednn_int8(*fixed, reason), *fixed);
@@ -133,7 +133,7 @@ void bench(const BenchArguments& arguments) {
   for (const std::vector<std::uint8_t>& image : {images.fixed, images.float32}) {
     for (BenchRow& row : bench_numerics({image, frames}, print_measuring)) rows.push_back(std::move(row));
   }
-  bench_peers(arguments, images, frames, rows);
+  bench_runtimes(arguments, images, frames, rows);
   fmt::print("\n{}\n", table_of(rows));
   if (!arguments.json.empty()) write_file(arguments.json, json_of(rows).dump(2) + "\n");
 }

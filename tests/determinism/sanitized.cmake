@@ -2,7 +2,7 @@
 #   cmake -DSOURCE=<source tree> -DBUILD=<build folder> -P sanitized.cmake
 cmake_minimum_required(VERSION 3.25)
 
-set(tests test_gnc_numerics test_gnc_attitude test_gnc_lidar test_gnc_nn test_gnc_rcnn)
+set(tests test_gnc_numerics test_gnc_attitude test_gnc_lidar test_gnc_nn test_gnc_surface test_gnc_rcnn test_gnc_estimation)
 
 function(must)
   execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result)

@@ -11,7 +11,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ.get("TUMBLESIGHT_BUILD", ROOT / "build/test"))  # for what is generated there
-COPIED = ("gnc", "fsw/app", "fsw/config", "hal", "sim/host", "sim/world", "docs/contributing.md", "docs/icd.md", "tests/documents")
+COPIED = ("gnc", "fsw/app", "fsw/c", "fsw/config", "hal", "sim/host", "sim/world", "docs/contributing.md", "docs/icd.md", "tests/documents")
 COMPILER = ["g++", "-std=c++17", "-O0", "-fsyntax-only", "-DTUMBLESIGHT_FLOAT32=1", "-DTUMBLESIGHT_APP_FLOAT32=0",
             '-DTUMBLESIGHT_VERSION="0"', "-isystem", "/usr/include/eigen3"]
 
@@ -110,6 +110,11 @@ class Parameter(Recipe):
         row = "TUMBLESIGHT_PARAMETER(LongestWithoutChaser_ms,"
         self.edit("fsw/config/parameters.inc", row, "TUMBLESIGHT_PARAMETER(Patience_ms, 1, 9, 5)  // how long it waits\n" + row)
         self.expect_compiles("fsw/app/parameter_table.cpp")
+        self.expect_refused("fsw/c/parameters.cpp", "a parameter is missing here")
+        self.edit("fsw/c/tumblesight_c.h", "  uint32_t longest_without_chaser_ms;", "  uint32_t patience_ms;\n  uint32_t longest_without_chaser_ms;")
+        self.edit("fsw/c/parameters.cpp", "    &tumblesight_parameters::longest_without_chaser_ms,",
+                  "    &tumblesight_parameters::patience_ms,\n    &tumblesight_parameters::longest_without_chaser_ms,")
+        self.expect_compiles("fsw/c/parameters.cpp")
         self.expect_documented("Patience_ms", "how long it waits")
 
 
@@ -125,6 +130,7 @@ class TelemetryField(Recipe):
         self.edit("hal/dds/idl/tumblesight.idl", "  unsigned long inference_max_us;\n",
                   "  unsigned long inference_max_us;\n  unsigned long blinks;\n")
         self.assertEqual(self.script("icd.py", "--messages")[0], 0)
+        self.edit("fsw/c/tumblesight_c.h", "  uint32_t inference_max_us;", "  uint32_t inference_max_us;\n  uint32_t blinks;")
         self.expect_documented("`blinks`", "since the start")
 
 

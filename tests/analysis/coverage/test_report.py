@@ -17,7 +17,8 @@ SOURCE = """bool f(bool a, bool b, bool c) {
 # line, column, last line, last column; times true, times false; three numbers that are not used
 BRANCHES = [[2, 7, 2, 8, 3, 1, 0, 0, 6], [2, 12, 2, 13, 1, 2, 0, 0, 6], [3, 7, 3, 13, 0, 0, 0, 0, 4],
             [4, 10, 4, 11, 1, 2, 0, 0, 6], [4, 15, 4, 16, 0, 2, 0, 0, 6]]
-DECISIONS = [[2, 7, 2, 13, 0, 0, 5, [True, True]], [4, 10, 4, 16, 0, 0, 5, [True, False]]]
+# As llvm-cov 19 writes them: the place, a number of the file, a kind, whether each condition decides.
+DECISIONS = [[2, 7, 2, 13, 0, 5, [True, True]], [4, 10, 4, 16, 0, 5, [True, False]]]
 SEGMENTS = [[1, 32, 4, True, True, False], [3, 7, 3, True, True, False], [5, 2, 0, False, False, False]]
 
 
@@ -67,12 +68,20 @@ class Coverage(unittest.TestCase):
         self.assertFalse(passed)
         self.assertIn("`b` of `a && b` needs no exception", text)
 
+    def test_without_a_decision_nothing_was_measured(self):
+        self.assertFalse(self.report(self.read(decisions=[]))[0])
+
+    def test_another_branch_inside_a_decision_is_no_condition(self):
+        choice = [4, 15, 4, 15, 1, 1, 0, 0, 4]
+        file, = self.read(branches=sorted([*BRANCHES, choice]))
+        self.assertEqual([condition for _, _, condition in file.undecided()], ["c"])
+
     def test_the_instances_of_a_template_count_together(self):
-        other = [*DECISIONS, [4, 10, 4, 16, 0, 0, 5, [False, True]]]
+        other = [*DECISIONS, [4, 10, 4, 16, 0, 5, [False, True]]]
         self.assertTrue(self.report(self.read(decisions=other))[0])
 
     def test_too_few_branches_fail(self):
-        other = [*DECISIONS, [4, 10, 4, 16, 0, 0, 5, [False, True]]]
+        other = [*DECISIONS, [4, 10, 4, 16, 0, 5, [False, True]]]
         self.assertTrue(self.report(self.read(decisions=other), least=87.5)[0])
         self.assertFalse(self.report(self.read(decisions=other), least=88.0)[0])
 

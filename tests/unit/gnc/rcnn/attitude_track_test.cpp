@@ -401,7 +401,7 @@ TEST(AttitudeTrack, FindsNoMotionModelFromUncertainMeasurements) {
            inertia);
   }
   EXPECT_EQ(track.motion_model(), kSpinModel)
-      << "an expected error of 90 degrees does not distinguish the motion_models";
+      << "an expected error of 90 degrees does not distinguish the motion models";
 }
 
 // Verifies TS-EST-170.

@@ -1,5 +1,5 @@
 // The files of `tumblesight export` are valid ONNX of the network's sizes. Their outputs are checked in
-// tests/unit/sim/bench: peer_test.cpp and step_model_test.cpp.
+// tests/unit/sim/bench: runtime_test.cpp and step_model_test.cpp.
 #include "sim/onnx/onnx_model.hpp"
 
 #include <gtest/gtest.h>
