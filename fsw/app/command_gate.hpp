@@ -1,4 +1,4 @@
-// CommandGate: the checks that a command packet must pass before it is carried out. Nothing in a packet is
+// Command gate: the checks that a command packet must pass before it is carried out. Nothing in a packet is
 // used before its authentication code has been checked.
 #pragma once
 

@@ -1,4 +1,4 @@
-// ExpectedError: by how much an attitude of the network is wrong, from all that the frame says about it. A
+// Expected error: by how much an attitude of the network is wrong, from all that the frame says about it. A
 // logistic regression gives the probability that it is wrong, by more than 20 degrees. Specification:
 // docs/numerics.md.
 #pragma once

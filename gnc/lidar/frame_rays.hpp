@@ -1,6 +1,6 @@
-// FrameRays: what a sensor measures along its own rays, as a RangeImage. For the driver of a sensor with more
-// rays than a RangeImage takes, or with rays that are not uniform in the tangent of their angle. The driver
-// cuts out the middle of the view, or bins it, or both.
+// Frame rays: what a sensor measures along its own rays, as a RangeImage. For the driver of a sensor with
+// more rays than a RangeImage takes, or with rays that are not uniform in the tangent of their angle. The
+// driver cuts out the middle of the view, or bins it, or both.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// PoseChoice: which attitudes a frame is registered at, and which of them the track takes.
+// Pose choice: which attitudes a frame is registered at, and which of them the track takes.
 #pragma once
 
 #include "gnc/registration/pose_track.hpp"

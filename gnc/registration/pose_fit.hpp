@@ -1,4 +1,4 @@
-// PoseFit: the motion of the target that the last registered poses agree on.
+// Pose fit: the motion of the target that the last registered poses agree on.
 //
 // Least squares over up to ten poses, each with the information that its frame gave: turn and rate by a
 // motion model of torque-free motion, position and velocity on a straight line. A pose that does not agree

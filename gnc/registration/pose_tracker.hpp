@@ -1,4 +1,4 @@
-// PoseTracker: from the attitudes that the network offers to a pose with rates, covariance and a verdict.
+// Pose tracker: from the attitudes that the network offers to a pose with rates, covariance and a verdict.
 //
 // - First frames: the network's attitude and its second one are registered shortly. The one that explains
 //   the frame better is registered fully.

@@ -1,4 +1,4 @@
-// SurfaceRenderer: the target's surface as the sensor would see it at a pose, on the screen of a frame.
+// Surface renderer: the target's surface as the sensor would see it at a pose, on the screen of a frame.
 #pragma once
 
 #include <array>

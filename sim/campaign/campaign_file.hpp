@@ -1,4 +1,4 @@
-// CampaignFile: which evaluations a campaign consists of, as a TOML file says it. Every key of a [[run]] is
+// Campaign file: which evaluations a campaign consists of, as a TOML file says it. Every key of a [[run]] is
 // an option of `tumblesight evaluate` without its dashes; a list makes a run for each of its values.
 //
 //   seed = 22

@@ -1,4 +1,4 @@
-// CampaignResults: the figures of all runs of a campaign, from their shard files.
+// Campaign results: the figures of all runs of a campaign, from their shard files.
 #pragma once
 
 #include <functional>

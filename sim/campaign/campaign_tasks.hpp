@@ -1,4 +1,4 @@
-// CampaignTasks: a campaign divided into shards of about equal duration, and what of them is done. The shard
+// Campaign tasks: a campaign divided into shards of about equal duration, and what of them is done. The shard
 // files are the only record of that: whoever has them can go on.
 #pragma once
 

@@ -1,4 +1,4 @@
-// CampaignWorker: one of the processes that run a campaign's tasks. Workers share nothing but the shard
+// Campaign worker: one of the processes that run a campaign's tasks. Workers share nothing but the shard
 // files: each takes the next task that is neither done nor in the hands of another one. None is told how many
 // there are, and one that dies leaves its task to the others.
 #pragma once

@@ -1,4 +1,4 @@
-// SequenceRecord: the result of one sequence as bytes of a fixed size, every number with all its bits.
+// Sequence record: the result of one sequence as bytes of a fixed size, every number with all its bits.
 #pragma once
 
 #include <cstddef>

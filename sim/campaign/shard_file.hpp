@@ -1,4 +1,4 @@
-// ShardFile: the results of a part of an evaluation's sequences. One line of JSON says which evaluation and
+// Shard file: the results of a part of an evaluation's sequences. One line of JSON says which evaluation and
 // which part, then a record per sequence follows, each with a CRC-32. Records are only ever appended, so that
 // a killed run loses at most the one that it was writing, and goes on after the last whole one.
 //

@@ -1,4 +1,4 @@
-// DisturbedRuns: the disturbances under which `evaluate --paper` measures a network, and what it must still
+// Disturbed runs: the disturbances under which `evaluate --paper` measures a network, and what it must still
 // reach.
 #pragma once
 

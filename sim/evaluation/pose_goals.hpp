@@ -1,4 +1,4 @@
-// PoseGoals: what the registered pose has to reach, by target and condition, and under the effects of real
+// Pose goals: what the registered pose has to reach, by target and condition, and under the effects of real
 // sensors; and what the report has to know of itself in each of these runs.
 #pragma once
 

@@ -1,5 +1,5 @@
-// ExperimentRuns: what an experiment consists of. A run is a number of sequences in one scenario; the figures
-// of a cell, or the points of a curve, are made from one or more of them.
+// Experiment runs: what an experiment consists of. A run is a number of sequences in one scenario; the
+// figures of a cell, or the points of a curve, are made from one or more of them.
 #pragma once
 
 #include <cstdint>

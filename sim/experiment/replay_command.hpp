@@ -1,4 +1,4 @@
-// ReplayCommand: from the command of an evaluation to the one that shows a sequence of it.
+// Replay command: from the command of an evaluation to the one that shows a sequence of it.
 #pragma once
 
 #include <string>

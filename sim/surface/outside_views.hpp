@@ -1,5 +1,5 @@
-// OutsideViews: the target from all around. What a ray meets in one of the views is its outer surface: a mesh
-// need not be watertight, and nothing inside it counts.
+// Outside views: the target from all around. What a ray meets in one of the views is its outer surface: a
+// mesh need not be watertight, and nothing inside it counts.
 #pragma once
 
 #include <Eigen/Core>
