@@ -21,7 +21,7 @@ _BEFORE_LSTM = (
 )
 _AFTER_HEAD = (
     ("fusion", r"gnc::advance<"),
-    ("explained share", r"gnc::inlier_ratios\("),
+    ("inlier ratios", r"gnc::inlier_ratios\("),
     ("registration", r"gnc::track_pose\("),
     ("telemetry", r"gnc::FrameGate::numbers_skipped\("),  # the first function after the estimator
 )

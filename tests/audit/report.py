@@ -163,9 +163,10 @@ def _longest_steps(fixed):
 def _stages(fixed):
     names = list(fixed[0][1]["stages"])
     lines = ["## Instructions per stage", "",
-             "In thousands, for a step in fixed point, in the order of execution. The counts do not depend on what a frame shows, except that",
-             "a target which covers few of the frame's rays is resampled (docs/numerics.md): its depth image has another count, which is",
-             "the same for every such frame and is part of the longest step after a coast. The recorded frames are not resampled.", ""]
+             "In thousands, for a step in fixed point, in the order of execution. Except for registration the counts do not depend",
+             "on what a frame shows. A target that covers few of the frame's rays is resampled (docs/numerics.md): its depth image has another",
+             "count, which is the same for every such frame and is part of the longest step after a coast. The recorded frames are not",
+             "resampled.", ""]
     lines += _table(["stage", *(p.name for p, _ in fixed)],
                     [[name, *(f"{r['stages'][name] / 1e3:.0f}" for _, r in fixed)] for name in names[1:] + names[:1]])
     return lines + ["", "*application*: checks of frames, events, telemetry. Its work depends on what happens in the step; the table shows the",
