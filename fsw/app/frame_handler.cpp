@@ -90,12 +90,13 @@ void FrameHandler::pass_over() {
 
 void FrameHandler::use(const StepInputs& inputs) {
   const gnc::RangeImage& frame = *inputs.frame;
+  const gnc::FrameInputs frame_inputs{frame, inputs.chaser, inputs.chaser_now, state_.now_ns};
+  const gnc::FrameTrackerLimits limits = state_.tracker_limits();
   gnc::FrameOutcome& outcome = workspace_.outcome;
   hal::Telemetry& counters = state_.counters;
   hal::Stopwatch& stopwatch = *state_.platform.stopwatch;
   const std::uint64_t start_ns = stopwatch.now_ns();
-  tracker_.step({frame, inputs.chaser, inputs.chaser_now, state_.now_ns}, state_.tracker_limits(),
-                state_.tracking, outcome);
+  tracker_.use(frame_inputs, limits, state_.tracking, outcome);
   const std::uint64_t end_ns = stopwatch.now_ns();
   if (outcome.verdict == FrameVerdict::kBadContent) {
     note_bad_content(outcome.content, frame.sequence_number, frame.rays);
@@ -108,6 +109,7 @@ void FrameHandler::use(const StepInputs& inputs) {
   counters.inference_us = elapsed_us(start_ns, end_ns);
   if (counters.inference_us > counters.inference_max_us) counters.inference_max_us = counters.inference_us;
   note_use(frame);
+  tracker_.conclude(frame_inputs, limits, state_.tracking, outcome);
   report_attitude(frame, note_doubts(frame));
 }
 

@@ -43,10 +43,8 @@ QuaternionQ30 turn_of_lrf(const QuaternionQ30& q_inertial_lrf_last, const Quater
 }
 
 template <class N>
-void FrameTracker<N>::step(const FrameInputs& inputs, const FrameTrackerLimits& limits,
-                           FrameTrackerState& state, FrameOutcome& outcome) {
-  use(inputs, limits, state, outcome);
-  if (!outcome.used()) return;
+void FrameTracker<N>::conclude(const FrameInputs& inputs, const FrameTrackerLimits& limits,
+                               FrameTrackerState& state, FrameOutcome& outcome) const {
   check_attitude(limits, state, outcome);
   if ((outcome.doubts & kAttitudeUnsound) == 0) propagate(inputs, limits, state, outcome);
 }

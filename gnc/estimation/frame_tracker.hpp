@@ -114,11 +114,18 @@ class FrameTracker {
   // Uses or refuses one frame, checks its attitude and propagates it to the time of the cycle. A refused
   // frame changes neither `state` nor the estimator.
   void step(const FrameInputs& inputs, const FrameTrackerLimits& limits, FrameTrackerState& state,
-            FrameOutcome& outcome);
-
- private:
+            FrameOutcome& outcome) {
+    use(inputs, limits, state, outcome);
+    if (outcome.used()) conclude(inputs, limits, state, outcome);
+  }
+  // The two halves of step(), for a caller that measures the time of the first: admission and estimator;
+  // then, for a frame that was used, checks and propagation.
   void use(const FrameInputs& inputs, const FrameTrackerLimits& limits, FrameTrackerState& state,
            FrameOutcome& outcome);
+  void conclude(const FrameInputs& inputs, const FrameTrackerLimits& limits, FrameTrackerState& state,
+                FrameOutcome& outcome) const;
+
+ private:
   void propagate(const FrameInputs& inputs, const FrameTrackerLimits& limits, const FrameTrackerState& state,
                  FrameOutcome& outcome) const;
 

@@ -21,7 +21,8 @@
 //       96  16 n  section table, 4 bytes per field: id (1, 2, ...), offset, size in bytes,
 //                 CRC-32 of the section
 //        -     -  zeros up to the next multiple of 64, where the first section begins; but the last four
-//                 bytes before it identify the mission that the network was trained for (CRC-32), 0: not known
+//                 bytes before it identify the mission that the network was trained for (CRC-32), 0: not
+//                 known
 //        -     -  sections without gaps: the tensors in the order of for_each_tensor().
 //                 Fixed-point weights take one byte each, all other numbers four. In fixed point the last
 //                 two sections are the target's surface: points of it

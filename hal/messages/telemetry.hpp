@@ -80,8 +80,7 @@ struct Telemetry {
   TableStatus table_status = TableStatus::kEmpty;    // of the table that was uplinked
   std::uint32_t table_crc32 = 0;                     // CRC-32 of the active table
 
-  std::uint32_t inference_us =
-      0;  // last used frame, from admission to propagation, by the stopwatch; not in any digest
+  std::uint32_t inference_us = 0;  // last step of the estimator, by the stopwatch; not in any digest
   std::uint32_t inference_max_us = 0;
   // this step, without the vote before it, the store's time at its end and the telemetry
   std::uint32_t step_us = 0;
