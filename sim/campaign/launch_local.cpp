@@ -11,7 +11,7 @@ namespace {
 constexpr int kMostRestarts =
     3;  // of all workers together: a task that kills its worker must not go on forever
 
-struct Worker {
+struct LocalWorker {
   std::unique_ptr<ChildProcess> process;
   std::string log;
   bool counted = false;  // among those that died
@@ -29,7 +29,7 @@ class LocalWorkers final : public Launcher {
   bool running() override {
     bool any = false;
     int to_start = 0;
-    for (Worker& worker : workers_) {
+    for (LocalWorker& worker : workers_) {
       if (worker.process->running()) {
         any = true;
       } else if (!worker.process->ended_well() && !worker.counted) {
@@ -51,7 +51,7 @@ class LocalWorkers final : public Launcher {
   }
 
   const LaunchSettings settings_;
-  std::vector<Worker> workers_;
+  std::vector<LocalWorker> workers_;
   std::string started_;
   int deaths_ = 0;
   std::string fault_;

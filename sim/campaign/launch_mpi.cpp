@@ -11,7 +11,7 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kMostOfAQuestion_s = 30.0;
+constexpr double kLongestQuestion_s = 30.0;
 
 // mpirun does not end when this program is killed, unless the kernel tells it. `setpriv` is part of
 // util-linux.
@@ -20,7 +20,7 @@ std::vector<std::string> ending_with_us(std::vector<std::string> command) {
   std::vector<std::string> trial = with_us;
   trial.push_back("true");
   try {
-    (void)output_of("setpriv", trial, kMostOfAQuestion_s);
+    (void)output_of("setpriv", trial, kLongestQuestion_s);
   } catch (const ProgramFailure&) {
     return command;
   }
@@ -66,7 +66,7 @@ class MpiWorkers final : public Launcher {
 
 std::unique_ptr<Launcher> launch_mpi(const LaunchSettings& settings) {
   try {
-    (void)output_of("mpirun", {"--version"}, kMostOfAQuestion_s);
+    (void)output_of("mpirun", {"--version"}, kLongestQuestion_s);
   } catch (const ProgramFailure& error) {
     throw std::runtime_error(
         fmt::format("{}; install an MPI (Debian: openmpi-bin), or use --on local", error.what()));

@@ -10,7 +10,7 @@ namespace {
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "records are little-endian");
 
-constexpr std::size_t kCrcBytes = 4;
+constexpr std::size_t kRecordCrcBytes = 4;
 
 // The two directions have the same calls, so that serialise() is the only description of a record.
 class Writer {
@@ -89,7 +89,7 @@ std::uint32_t crc_of(const std::uint8_t* bytes, std::size_t size_bytes) {
 std::size_t record_size_bytes(std::uint32_t frames) {
   static const std::size_t frame_bytes = frame_size_bytes();
   constexpr std::size_t kFrameFlag = 1;  // whether it was delivered
-  return 2 * sizeof(std::uint32_t) + frames * (kFrameFlag + frame_bytes) + 2 * sizeof(double) + kCrcBytes;
+  return 2 * sizeof(std::uint32_t) + frames * (kFrameFlag + frame_bytes) + 2 * sizeof(double) + kRecordCrcBytes;
 }
 
 std::vector<std::uint8_t> to_record(std::uint32_t run, const SequenceResult& result, std::uint32_t frames) {
@@ -117,7 +117,7 @@ std::uint32_t run_of_record(const std::uint8_t* bytes) {
 }
 
 std::optional<SequenceResult> from_record(const std::uint8_t* bytes, std::uint32_t frames) {
-  const std::size_t content_bytes = record_size_bytes(frames) - kCrcBytes;
+  const std::size_t content_bytes = record_size_bytes(frames) - kRecordCrcBytes;
   std::uint32_t crc = 0;
   Reader(bytes + content_bytes)(crc);
   if (crc != crc_of(bytes, content_bytes)) return std::nullopt;

@@ -75,7 +75,7 @@ void add_chaser(std::vector<DisturbedRun>& runs) {
   runs.push_back({Condition::kNominal, with<&Disturbances::no_ego_motion>(true, turning), {}});
 }
 
-std::vector<DisturbedRun> make_runs() {
+std::vector<DisturbedRun> make_disturbed_runs() {
   std::vector<DisturbedRun> runs;
   add_gaps(runs);
   add_freezes(runs);
@@ -87,7 +87,7 @@ std::vector<DisturbedRun> make_runs() {
 }  // namespace
 
 const std::vector<DisturbedRun>& disturbed_runs() {
-  static const std::vector<DisturbedRun> runs = make_runs();
+  static const std::vector<DisturbedRun> runs = make_disturbed_runs();
   return runs;
 }
 

@@ -37,7 +37,7 @@ Eigen::Vector3d scaled(const std::array<std::int32_t, 3>& micro) {
   return 1e-6 * Eigen::Vector3d(micro[0], micro[1], micro[2]);
 }
 
-double mean(const std::vector<double>& values) {
+double mean_or_none(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value;
   return values.empty() ? kNone : sum / static_cast<double>(values.size());
@@ -99,17 +99,17 @@ PoseSummary summarise_poses(const std::vector<PoseErrors>& poses) {
   }
   const auto count = static_cast<double>(poses.size());
   summary.known = static_cast<double>(known) / count;
-  summary.mean_deg = mean(all_deg);
-  summary.mean_within_20_deg = mean(near_deg);
+  summary.mean_deg = mean_or_none(all_deg);
+  summary.mean_within_20_deg = mean_or_none(near_deg);
   summary.median_deg = median(all_deg);
   summary.within_20deg = static_cast<double>(near_deg.size()) / count;
-  summary.across_m = mean(across_m);
-  summary.along_m = mean(along_m);
-  summary.rate_deg_s = mean(rate_deg_s);
-  summary.velocity_m_s = mean(velocity_m_s);
+  summary.across_m = mean_or_none(across_m);
+  summary.along_m = mean_or_none(along_m);
+  summary.rate_deg_s = mean_or_none(rate_deg_s);
+  summary.velocity_m_s = mean_or_none(velocity_m_s);
   summary.verified = static_cast<double>(inside.size()) / count;
   summary.verified_wrong = static_cast<double>(wrong) / count;
-  summary.inside_95 = mean(inside);
+  summary.inside_95 = mean_or_none(inside);
   return summary;
 }
 

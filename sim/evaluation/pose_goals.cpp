@@ -33,38 +33,38 @@ constexpr ConditionGoals kGoals[] = {
 };
 
 template <auto member, class Value>
-Effects with(Value value) {
+Effects only(Value value) {
   Effects effects;
   effects.*member = value;
   return effects;
 }
 
-std::vector<SensorRun> make_runs() {
+std::vector<SensorRun> make_sensor_runs() {
   constexpr PoseGoal kClutter{0.2, 0.998};
   const RangeLimits papers;
   return {
-      {with<&Effects::false_returns>(0.01), papers, kClutter},
-      {with<&Effects::hot_pixels>(0.01), papers, kClutter},
-      {with<&Effects::background>(0.5), papers, kClutter},
-      {with<&Effects::background>(1.0), papers, kClutter},
-      {with<&Effects::plume>(0.01), papers, kClutter},
-      {with<&Effects::plume>(0.05), papers, PoseGoal{0.5, 0.99}},
-      {with<&Effects::debris>(1.5), papers, PoseGoal{0.5, 0.99}},
-      {with<&Effects::panel_lobe>(40.0), papers, PoseGoal{0.5, 0.985}},
-      {with<&Effects::panel_lobe>(20.0), papers, PoseGoal{1.2, 0.95}},
-      {with<&Effects::lobe>(40.0), papers, PoseGoal{1.2, 0.95}},
-      {with<&Effects::cosine>(3.0), papers, PoseGoal{0.4, 0.995}},
-      {with<&Effects::panel_turn>(10.0), papers, PoseGoal{1.0, 0.998}},
-      {with<&Effects::panel_turn>(30.0), papers, PoseGoal{2.0, 0.985}},
-      {with<&Effects::noise>(5.0), papers, PoseGoal{0.6, 0.98}},
-      {with<&Effects::fixed_fov>(1.0), {20.0, 60.0}, PoseGoal{0.3, 0.995}},
-      {with<&Effects::fixed_fov>(1.0), {60.0, 100.0}, PoseGoal{1.5, 0.97}},
-      {with<&Effects::rays>(64.0), papers, PoseGoal{0.3, 0.998}},
-      {with<&Effects::rays>(32.0), papers, PoseGoal{1.0, 0.985}},
-      {with<&Effects::part_missing>(1.0), papers, PoseGoal{0.3, 0.995}},
+      {only<&Effects::false_returns>(0.01), papers, kClutter},
+      {only<&Effects::hot_pixels>(0.01), papers, kClutter},
+      {only<&Effects::background>(0.5), papers, kClutter},
+      {only<&Effects::background>(1.0), papers, kClutter},
+      {only<&Effects::plume>(0.01), papers, kClutter},
+      {only<&Effects::plume>(0.05), papers, PoseGoal{0.5, 0.99}},
+      {only<&Effects::debris>(1.5), papers, PoseGoal{0.5, 0.99}},
+      {only<&Effects::panel_lobe>(40.0), papers, PoseGoal{0.5, 0.985}},
+      {only<&Effects::panel_lobe>(20.0), papers, PoseGoal{1.2, 0.95}},
+      {only<&Effects::lobe>(40.0), papers, PoseGoal{1.2, 0.95}},
+      {only<&Effects::cosine>(3.0), papers, PoseGoal{0.4, 0.995}},
+      {only<&Effects::panel_turn>(10.0), papers, PoseGoal{1.0, 0.998}},
+      {only<&Effects::panel_turn>(30.0), papers, PoseGoal{2.0, 0.985}},
+      {only<&Effects::noise>(5.0), papers, PoseGoal{0.6, 0.98}},
+      {only<&Effects::fixed_fov>(1.0), {20.0, 60.0}, PoseGoal{0.3, 0.995}},
+      {only<&Effects::fixed_fov>(1.0), {60.0, 100.0}, PoseGoal{1.5, 0.97}},
+      {only<&Effects::rays>(64.0), papers, PoseGoal{0.3, 0.998}},
+      {only<&Effects::rays>(32.0), papers, PoseGoal{1.0, 0.985}},
+      {only<&Effects::part_missing>(1.0), papers, PoseGoal{0.3, 0.995}},
       {{}, {10.0, 12.0}, PoseGoal{0.5, 0.99}},
-      {with<&Effects::wrong_object>(1.0), papers, {}},
-      {with<&Effects::sphere>(1.0), papers, {}},
+      {only<&Effects::wrong_object>(1.0), papers, {}},
+      {only<&Effects::sphere>(1.0), papers, {}},
   };
 }
 
@@ -85,7 +85,7 @@ std::size_t count_of(const CellResult& cell, double share) {
 }  // namespace
 
 const std::vector<SensorRun>& sensor_runs() {
-  static const std::vector<SensorRun> runs = make_runs();
+  static const std::vector<SensorRun> runs = make_sensor_runs();
   return runs;
 }
 

@@ -16,10 +16,6 @@ using Triangles = std::vector<std::size_t>;
 constexpr std::size_t kTetrahedron = 4;
 constexpr std::size_t kMostTriangles = 20'000;
 
-Vector3d corner(const TriangleMesh& mesh, std::size_t triangle, std::size_t which) {
-  return mesh.vertices_trf_m[mesh.triangles[triangle][which]].cast<double>();
-}
-
 std::vector<Vector3d> corners_of(const TriangleMesh& mesh, const Triangles& part) {
   std::vector<std::uint32_t> numbers;
   for (const std::size_t triangle : part)
@@ -59,8 +55,8 @@ std::vector<ConvexPart::Plane> ConvexPart::planes_if_convex(const TriangleMesh& 
   for (const Vector3d& place : corners) box.extend(place);
   std::vector<Plane> planes;
   for (const std::size_t triangle : part) {
-    const Vector3d a = corner(mesh, triangle, 0);
-    const Vector3d across = (corner(mesh, triangle, 1) - a).cross(corner(mesh, triangle, 2) - a);
+    const auto [a, b, c] = mesh.corners_trf_m(triangle);
+    const Vector3d across = (b - a).cross(c - a);
     if (!(across.norm() > 0.0)) continue;
     Plane plane{across.normalized(), 0.0};
     plane.offset_m = plane.normal.dot(a);

@@ -24,14 +24,10 @@ constexpr double kSeen = 0.5;            // of the triangles of a part
 constexpr std::size_t kMostBoxes = 256;  // compared with those of all other parts, the largest first
 constexpr std::size_t kPoints = 4000;    // over all other parts, to see how much of them is inside one
 
-Vector3d corner(const TriangleMesh& mesh, std::size_t triangle, std::size_t which) {
-  return mesh.vertices_trf_m[mesh.triangles[triangle][which]].cast<double>();
-}
-
 Eigen::AlignedBox3d box_of(const TriangleMesh& mesh, const Triangles& triangles) {
   Eigen::AlignedBox3d box;
   for (const std::size_t triangle : triangles) {
-    for (std::size_t i = 0; i < 3; ++i) box.extend(corner(mesh, triangle, i));
+    for (const Vector3d& corner : mesh.corners_trf_m(triangle)) box.extend(corner);
   }
   return box;
 }
@@ -60,8 +56,8 @@ double largest_share(const std::vector<PartBox>& boxes, std::size_t part) {
 }
 
 double area_of(const TriangleMesh& mesh, std::size_t triangle) {
-  const Vector3d a = corner(mesh, triangle, 0);
-  return 0.5 * (corner(mesh, triangle, 1) - a).cross(corner(mesh, triangle, 2) - a).norm();
+  const auto [a, b, c] = mesh.corners_trf_m(triangle);
+  return 0.5 * (b - a).cross(c - a).norm();
 }
 
 // The R2 sequence: any number of consecutive points is spread evenly over the triangle.
@@ -73,8 +69,8 @@ Vector3d point_on(const TriangleMesh& mesh, std::size_t triangle, std::size_t nu
     u = 1.0 - u;
     v = 1.0 - v;
   }
-  const Vector3d a = corner(mesh, triangle, 0);
-  return a + u * (corner(mesh, triangle, 1) - a) + v * (corner(mesh, triangle, 2) - a);
+  const auto [a, b, c] = mesh.corners_trf_m(triangle);
+  return a + u * (b - a) + v * (c - a);
 }
 
 // All triangles except those of a part.

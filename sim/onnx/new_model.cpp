@@ -18,7 +18,7 @@ void add_metadata(onnx::ModelProto& model, const std::string& key, const std::st
   entry.set_value(value);
 }
 
-constexpr const char* kPeriod_s = "2.7";
+constexpr const char* kPeriodText_s = "2.7";
 static_assert(gnc::kNominalPeriod_ns == 2'700'000'000);
 constexpr const char* kUnits =
     "metres, seconds, radians; *_mm in millimetres; inertia_trf: xx yy zz xy xz yz, scaled to a trace of 3";
@@ -62,7 +62,7 @@ onnx::ModelProto new_model(const gnc::ModelHeader& header, const std::string& gr
   add_metadata(model, "swath_mm", std::to_string(header.projection.swath_mm));
   add_metadata(model, "target_radius_mm", std::to_string(header.projection.target_radius_mm));
   add_metadata(model, "inertia_trf", elements_of(header.inertia.tensor_trf));
-  add_metadata(model, "period_s", kPeriod_s);
+  add_metadata(model, "period_s", kPeriodText_s);
   add_metadata(model, "units", kUnits);
   add_metadata(model, "frames", kFrames);
   return model;

@@ -12,7 +12,7 @@ namespace tumblesight::sim {
 namespace shape = gnc::shape;
 namespace {
 
-constexpr double kPeriod_s = 1e-9 * gnc::kNominalPeriod_ns;
+constexpr double kNominalPeriod_s = 1e-9 * gnc::kNominalPeriod_ns;
 constexpr int kMotionModels = gnc::kMotionModels;
 
 struct StepState {
@@ -78,7 +78,7 @@ void describe_outputs(const TrackedGraph& tracked, const HypothesesGraph& hypoth
              "the LiDAR's frame: v_lrf = q_lrf_trf v_trf.");
   add_output(tracked.expected_error_rad, "expected_error_rad", {1, 1},
              "The angle by which the network expects q_lrf_trf to be wrong, 0 to pi.");
-  add_output(reshaped(tracked.motion.rate_lrf / kPeriod_s, {1, 3}), "rate_lrf_rad_s", {1, 3},
+  add_output(reshaped(tracked.motion.rate_lrf / kNominalPeriod_s, {1, 3}), "rate_lrf_rad_s", {1, 3},
              "Angular rate of the target relative to inertial space, in the LiDAR's frame.");
   add_output(reshaped(quaternion_from_rotation(hypotheses.r_lrf_trf), {1, shape::kHypotheses, 4}),
              "q_lrf_trf_hypotheses", {1, shape::kHypotheses, 4},

@@ -12,7 +12,7 @@
 namespace tumblesight::sim {
 namespace {
 
-std::vector<FaultRow> make_table() {
+std::vector<FaultRow> make_fault_table() {
   std::vector<FaultRow> table{
       {"drop", "no frame is delivered", ""},
       {"freeze", "the last image is repeated under new numbers and times", ""},
@@ -33,7 +33,7 @@ std::vector<FaultRow> make_table() {
 }  // namespace
 
 const std::vector<FaultRow>& fault_table() {
-  static const std::vector<FaultRow> kTable = make_table();
+  static const std::vector<FaultRow> kTable = make_fault_table();
   return kTable;
 }
 

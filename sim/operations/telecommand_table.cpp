@@ -30,7 +30,7 @@ std::string names_of_faults() {
 #define TUMBLESIGHT_ENUMERATOR(name, enumeration, least, most, meaning) number(#name, 1, least, most, meaning)
 #define TUMBLESIGHT_BYTES(name, least, most, meaning) number(#name, 0, least, most, meaning)
 #define TUMBLESIGHT_TELECOMMAND(code, name, modes, ...) {FunctionCode::k##name, {__VA_ARGS__}},
-std::vector<TelecommandRow> make_table() {
+std::vector<TelecommandRow> make_telecommand_table() {
   std::vector<TelecommandRow> table{
 #include "hal/messages/telecommands.inc"
   };
@@ -88,7 +88,7 @@ void add_bytes(const TelecommandRow& row, const ArgumentField& field, const std:
 }  // namespace
 
 const std::vector<TelecommandRow>& telecommand_table() {
-  static const std::vector<TelecommandRow> table = make_table();
+  static const std::vector<TelecommandRow> table = make_telecommand_table();
   return table;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kRays = 256;  // per side
+constexpr int kViewRays = 256;  // per side
 constexpr double kGoldenAngle_rad = 2.399963229728653;
 // A prime, so that the rays that give a point are spread over a view's rows and columns.
 constexpr std::size_t kRaysPerPoint = 31;
@@ -53,7 +53,7 @@ OuterSurface outer_surface(const TriangleMesh& mesh) {
   outer.hits.resize(mesh.triangles.size(), {0, 0});
   for (int i = 0; i < kOutsideViews; ++i) {
     const FrameTruth truth = outside_view(mesh, i);
-    const RangeGrid grid = lidar.true_surfaces(truth, kRays, swath_m(mesh));
+    const RangeGrid grid = lidar.true_surfaces(truth, kViewRays, swath_m(mesh));
     const Eigen::Matrix3d r_lrf_trf = truth.q_lrf_trf.toRotationMatrix();
     for (std::size_t ray = 0; ray < grid.range_m.size(); ++ray) {
       if (!std::isfinite(grid.range_m[ray])) continue;

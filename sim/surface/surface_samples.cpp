@@ -20,7 +20,7 @@ using gnc::SurfaceModel;
 
 constexpr int kCandidates = 40'000;  // points on the mesh, each with two sides
 constexpr int kSeenBy = 2;
-constexpr int kRays = 512;  // per side: one meets the target every 0.004 radii
+constexpr int kSampleRays = 512;  // per side: one meets the target every 0.004 radii
 // A larger incidence would not tell the two sides of a thin panel: its slope within a ray exceeds the panel.
 constexpr double kLeastFacing = 0.5;
 constexpr double kDepthTolerance_radii = 0.001;
@@ -36,13 +36,10 @@ struct Sample {
 };
 
 std::vector<Sample> candidates(const TriangleMesh& mesh) {
-  const auto corner = [&mesh](std::size_t triangle, int k) {
-    return mesh.vertices_trf_m[mesh.triangles[triangle][static_cast<std::size_t>(k)]].cast<double>();
-  };
   std::vector<double> area_until;
   double area = 0.0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Vector3d a = corner(i, 0), b = corner(i, 1), c = corner(i, 2);
+    const auto [a, b, c] = mesh.corners_trf_m(i);
     area += (b - a).cross(c - a).norm();
     area_until.push_back(area);
   }
@@ -53,7 +50,7 @@ std::vector<Sample> candidates(const TriangleMesh& mesh) {
     const auto found = std::upper_bound(area_until.begin(), area_until.end(), area * random.uniform());
     const auto triangle =
         static_cast<std::size_t>(std::min(found, area_until.end() - 1) - area_until.begin());
-    const Vector3d a = corner(triangle, 0), b = corner(triangle, 1), c = corner(triangle, 2);
+    const auto [a, b, c] = mesh.corners_trf_m(triangle);
     const double u = std::sqrt(random.uniform()), v = random.uniform();
     const Vector3d position = (1.0 - u) * a + u * (1.0 - v) * b + u * v * c;
     const Vector3d normal = (b - a).cross(c - a).normalized();
@@ -85,7 +82,7 @@ void count_views(const TriangleMesh& mesh, std::vector<Sample>& samples) {
   for (int i = 0; i < kOutsideViews; ++i) {
     const FrameTruth truth = outside_view(mesh, i);
     const Eigen::Matrix3d r_lrf_trf = truth.q_lrf_trf.toRotationMatrix();
-    const RangeGrid grid = lidar.true_ranges(truth, kRays, swath_m(mesh));
+    const RangeGrid grid = lidar.true_ranges(truth, kSampleRays, swath_m(mesh));
     for (Sample& sample : samples) {
       if (is_seen(sample, r_lrf_trf, truth.range_m, radius_m, grid)) ++sample.seen_by;
     }

@@ -19,8 +19,8 @@ namespace {
 constexpr int kFrames = kTrainingFrames;
 
 // Buffers of one worker.
-struct Workspace {
-  explicit Workspace(const gnc::NetworkWeights<gnc::Float32>& weights) { network.weights() = weights; }
+struct FeatureWorkspace {
+  explicit FeatureWorkspace(const gnc::NetworkWeights<gnc::Float32>& weights) { network.weights() = weights; }
   gnc::RangeImage frame;
   gnc::DepthImage image;
   gnc::DepthImageScratch scratch;
@@ -117,7 +117,7 @@ void put_frame(const gnc::Network<gnc::Float32>& network, const gnc::Hypotheses<
 }
 
 // Computes one sequence into row `index` of `all`. False if the sensor sees too little in one of its frames.
-bool compute(const TrainingTargets& targets, std::uint64_t seed, std::int64_t index, Workspace& work,
+bool compute(const TrainingTargets& targets, std::uint64_t seed, std::int64_t index, FeatureWorkspace& work,
              FeatureSet& all) {
   const auto number = static_cast<std::uint64_t>(index);
   const FrameRenderer renderer(*effect_set_of(targets, number).lidars[number % meshes_of(targets)],
@@ -172,7 +172,7 @@ SequenceFeatures::~SequenceFeatures() {
 }
 
 void SequenceFeatures::work() {
-  const auto work = std::make_unique<Workspace>(weights_);
+  const auto work = std::make_unique<FeatureWorkspace>(weights_);
   for (;;) {
     std::int64_t index = 0;
     {

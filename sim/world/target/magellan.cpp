@@ -128,7 +128,7 @@ TriangleMesh motor_adapter() {
 }
 
 // The panel on +x with its drive and boom; the one on -x is the mirror image, so that both lie in one plane.
-TriangleMesh panels() {
+TriangleMesh wings() {
   // Frame of the panel: x along the boom, y up the panel, z along the normal of its cells.
   const Eigen::Isometry3f panel =
       frame_at({3.3105F, 0.032F, -0.517F}, Eigen::Vector3f::UnitX(), {0.0F, 1.0F, 1.0F});
@@ -254,7 +254,7 @@ TriangleMesh make_magellan() {
   TriangleMesh mesh;
   mesh.name = "magellan";
   for (const TriangleMesh& part : {high_gain_antenna(), subreflector(), forward_box(), bus(), motor_adapter(),
-                                   panels(), altimeter(), medium_gain_antenna(), pods_and_struts()}) {
+                                   wings(), altimeter(), medium_gain_antenna(), pods_and_struts()}) {
     append(mesh, part);
   }
   return mesh;

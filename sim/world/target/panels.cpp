@@ -22,16 +22,8 @@ constexpr double kParallel = 0.99;           // cosine between their normals
 constexpr double kParallelEdges = 1e-3;      // length of the cross product of directions that count as one
 constexpr std::size_t kMaxDirections = 200;  // tried for the smallest rectangle
 
-using Corners = std::array<Eigen::Vector3d, 3>;
-
-Corners corners_of(const TriangleMesh& mesh, std::size_t triangle) {
-  const auto& t = mesh.triangles[triangle];
-  return {mesh.vertices_trf_m[t[0]].cast<double>(), mesh.vertices_trf_m[t[1]].cast<double>(),
-          mesh.vertices_trf_m[t[2]].cast<double>()};
-}
-
 Eigen::Vector3d area_vector_m2(const TriangleMesh& mesh, std::size_t triangle) {
-  const Corners c = corners_of(mesh, triangle);
+  const auto c = mesh.corners_trf_m(triangle);
   return 0.5 * (c[1] - c[0]).cross(c[2] - c[0]);
 }
 
@@ -49,7 +41,7 @@ Extent extent_along(const TriangleMesh& mesh, const std::vector<std::size_t>& tr
                     const Eigen::Vector3d& axis) {
   Extent extent;
   for (const std::size_t triangle : triangles) {
-    for (const Eigen::Vector3d& corner : corners_of(mesh, triangle)) extent.add(axis.dot(corner));
+    for (const Eigen::Vector3d& corner : mesh.corners_trf_m(triangle)) extent.add(axis.dot(corner));
   }
   return extent;
 }
@@ -70,7 +62,7 @@ std::vector<Eigen::Vector3d> edge_directions(const TriangleMesh& mesh,
                                              const Eigen::Vector3d& normal) {
   std::vector<Eigen::Vector3d> directions;
   for (const std::size_t triangle : triangles) {
-    const Corners c = corners_of(mesh, triangle);
+    const auto c = mesh.corners_trf_m(triangle);
     for (int i = 0; i < 3 && directions.size() < kMaxDirections; ++i) {
       const Eigen::Vector3d edge = (c[(i + 1) % 3] - c[i]).normalized();
       if (std::abs(edge.dot(normal)) > 1.0 - kParallel) continue;
@@ -124,7 +116,7 @@ bool looks_like_a_panel(const TriangleMesh& mesh, const std::vector<std::size_t>
   if (extent_along(mesh, part, normal).length() > kMaxThickness * radius_m) return false;
   double reach_m = 0.0;
   for (const std::size_t triangle : part) {
-    for (const Eigen::Vector3d& corner : corners_of(mesh, triangle))
+    for (const Eigen::Vector3d& corner : mesh.corners_trf_m(triangle))
       reach_m = std::max(reach_m, corner.norm());
   }
   if (reach_m < kMinReach * radius_m) return false;
@@ -143,7 +135,7 @@ struct Plate {
 Plate plate_of(const TriangleMesh& mesh, const std::vector<std::size_t>& part) {
   Plate plate{part, normal_of(mesh, part), {}};
   for (const std::size_t triangle : part) {
-    for (const Eigen::Vector3d& corner : corners_of(mesh, triangle)) plate.box_trf_m.extend(corner);
+    for (const Eigen::Vector3d& corner : mesh.corners_trf_m(triangle)) plate.box_trf_m.extend(corner);
   }
   return plate;
 }

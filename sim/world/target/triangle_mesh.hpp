@@ -23,6 +23,12 @@ struct TriangleMesh {
   std::vector<std::string> notes{};
   std::vector<std::string> losses{};
 
+  // A triangle's corners.
+  std::array<Eigen::Vector3d, 3> corners_trf_m(std::size_t triangle) const {
+    const auto& [a, b, c] = triangles[triangle];
+    return {vertices_trf_m[a].cast<double>(), vertices_trf_m[b].cast<double>(),
+            vertices_trf_m[c].cast<double>()};
+  }
   // Largest distance of a vertex from the TRF's origin.
   float radius_m() const {
     float radius = 0.0F;
