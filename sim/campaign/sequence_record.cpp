@@ -89,7 +89,8 @@ std::uint32_t crc_of(const std::uint8_t* bytes, std::size_t size_bytes) {
 std::size_t record_size_bytes(std::uint32_t frames) {
   static const std::size_t frame_bytes = frame_size_bytes();
   constexpr std::size_t kFrameFlag = 1;  // whether it was delivered
-  return 2 * sizeof(std::uint32_t) + frames * (kFrameFlag + frame_bytes) + 2 * sizeof(double) + kRecordCrcBytes;
+  return 2 * sizeof(std::uint32_t) + frames * (kFrameFlag + frame_bytes) + 2 * sizeof(double) +
+         kRecordCrcBytes;
 }
 
 std::vector<std::uint8_t> to_record(std::uint32_t run, const SequenceResult& result, std::uint32_t frames) {

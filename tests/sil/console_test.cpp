@@ -25,17 +25,17 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::uint32_t kSteps = 20;
+constexpr std::uint32_t kConsoleSteps = 20;
 
 SilRunResult run(const std::string& mcap_path) {
-  return test::run_shipped(mcap_path, kSteps / 10);
+  return test::run_shipped(mcap_path, kConsoleSteps / 10);
 }
 
 void expect_the_steps(const SilRunResult& run, const RunSource& source, std::uint32_t first) {
   const StepLog& log = source.log();
-  ASSERT_EQ(log.state().steps, kSteps - first);
+  ASSERT_EQ(log.state().steps, kConsoleSteps - first);
   EXPECT_TRUE(log.state().has_ended);
-  for (std::uint32_t i = 0; i + first < kSteps; ++i) {
+  for (std::uint32_t i = 0; i + first < kConsoleSteps; ++i) {
     const StepResult& step = run.steps[i + first];
     const Json detail = log.step(i);
     EXPECT_EQ(detail["telemetry"]["frames_used"], step.telemetry.frames_used);
@@ -82,12 +82,12 @@ TEST(Console, ShowsTheFramesOfAFreeRun) {
 
 TEST(Console, ShowsFramesThatNoFlightProgramHasSeen) {
   const std::string path = test::temporary_path("frames.mcap");
-  const std::vector<Sequence> sequences = test::sequences(kSteps / 10, 1);
+  const std::vector<Sequence> sequences = test::sequences(kConsoleSteps / 10, 1);
   SimulatedSteps source(test::lidar(), test::kSwath_m, sequences, true);
   write_frames_file(path, source, "near_shoemaker", 5, test::kSwath_m);
   const RecordedRun shown(path);
-  ASSERT_EQ(shown.log().state().steps, kSteps);
-  for (std::uint32_t k = 0; k < kSteps; ++k) {
+  ASSERT_EQ(shown.log().state().steps, kConsoleSteps);
+  for (std::uint32_t k = 0; k < kConsoleSteps; ++k) {
     gnc::RangeImage frame;
     EXPECT_TRUE(shown.frame(k, frame)) << k;
     EXPECT_EQ(frame.sequence_number, k);
@@ -108,7 +108,7 @@ TEST(Console, ShowsARecordingWithoutItsEnd) {
   const RecordedRun shown(path);
   EXPECT_FALSE(shown.is_whole());
   EXPECT_GT(shown.log().state().steps, 2U);
-  EXPECT_LT(shown.log().state().steps, kSteps);
+  EXPECT_LT(shown.log().state().steps, kConsoleSteps);
 }
 
 TEST(Console, SaysThatARecordingWasCutOffBeforeItsFirstMessages) {
@@ -133,7 +133,7 @@ TEST(Console, ARecordingThatBecomesShorterIsRefusedFromThenOn) {
   const RecordedRun shown(path);
   ASSERT_EQ(truncate(path.c_str(), 5000), 0);
   gnc::RangeImage frame;
-  EXPECT_THROW((void)shown.frame(kSteps - 1, frame), std::runtime_error);
+  EXPECT_THROW((void)shown.frame(kConsoleSteps - 1, frame), std::runtime_error);
 }
 
 TEST(Console, RefusesAFileThatIsNoRecordingOfARunByName) {
@@ -178,8 +178,8 @@ TEST(Console, FollowsARunWithoutChangingIt) {
   EXPECT_EQ(test::trace_of(watched), test::trace_of(alone));
   ASSERT_TRUE(wait_until([&] { return shown.log().state().has_ended; }));
   const StepLog::State state = shown.log().state();
-  EXPECT_GE(state.steps, kSteps / 2);
-  EXPECT_EQ(shown.log().k_of(state.steps - 1), kSteps - 1);
+  EXPECT_GE(state.steps, kConsoleSteps / 2);
+  EXPECT_EQ(shown.log().k_of(state.steps - 1), kConsoleSteps - 1);
   const Json rows = shown.log().rows(0)["rows"];
   for (std::uint64_t i = 1; i < state.steps; ++i) {
     gnc::RangeImage frame;
@@ -199,7 +199,7 @@ TEST(Console, WaitsForTheRunAfterAKilledOne) {
   }
   test::simulate("--speed 20 --domain " + std::to_string(domain));
   ASSERT_TRUE(wait_until([&] { return shown.log().state().has_ended; }));
-  EXPECT_GE(shown.log().state().steps, kSteps / 2);
+  EXPECT_GE(shown.log().state().steps, kConsoleSteps / 2);
 }
 
 TEST(Console, LeavesARunThatItCannotReachForANewerOne) {
@@ -223,9 +223,9 @@ TEST(Console, LeavesARunThatItCannotReachForANewerOne) {
         << shown.failure();
     test::simulate("--speed 20 --domain " + std::to_string(other_domain));
     ASSERT_TRUE(wait_until([&] { return shown.log().state().steps > 0 && shown.log().state().has_ended; }));
-    EXPECT_GE(shown.log().state().steps, kSteps / 2);
+    EXPECT_GE(shown.log().state().steps, kConsoleSteps / 2);
   }
-  EXPECT_GE(RecordedRun(path).log().state().steps, kSteps / 2) << "recorded is the run that was seen";
+  EXPECT_GE(RecordedRun(path).log().state().steps, kConsoleSteps / 2) << "recorded is the run that was seen";
 }
 
 // Topics are joined one after the other: of the first steps a part may be in the recording only, or missing.
@@ -245,11 +245,11 @@ TEST(Console, RecordsTheRunThatItHasJoined) {
   EXPECT_TRUE(recorded.is_whole());
   const std::uint64_t recorded_steps = recorded.log().state().steps;
   EXPECT_GE(recorded_steps, steps);
-  EXPECT_LE(recorded_steps, kSteps);
-  EXPECT_EQ(recorded.log().k_of(recorded_steps - 1), kSteps - 1);
+  EXPECT_LE(recorded_steps, kConsoleSteps);
+  EXPECT_EQ(recorded.log().k_of(recorded_steps - 1), kConsoleSteps - 1);
   const McapReader reader(path);
   for (const char* topic : {"/figures", "/tf", "/lidar/points"})
-    EXPECT_GE(reader.entries(reader.find(topic)->id).size(), kSteps / 2) << topic;
+    EXPECT_GE(reader.entries(reader.find(topic)->id).size(), kConsoleSteps / 2) << topic;
   gnc::RangeImage frame;
   EXPECT_TRUE(recorded.frame(recorded_steps - 1, frame));
 }
@@ -259,7 +259,7 @@ TEST(Console, ShowsARunWhoseRecordingCannotBeWritten) {
   const BusRun shown(domain, "", "/dev/full");
   test::simulate("--speed 50 --domain " + std::to_string(domain));
   ASSERT_TRUE(wait_until([&] { return shown.log().state().has_ended; }));
-  EXPECT_GE(shown.log().state().steps, kSteps / 2);
+  EXPECT_GE(shown.log().state().steps, kConsoleSteps / 2);
   EXPECT_NE(shown.failure().find("/dev/full"), std::string::npos) << shown.failure();
 }
 

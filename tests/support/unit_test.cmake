@@ -9,11 +9,12 @@ add_precompiled_headers(test_headers RULES test_rules GTest::gtest
 # One program of unit tests, and a ctest test for each of its tests. In an emulator, where a process takes long to start, a
 # ctest test is the whole program or one of its PARTS, so that two of them share the work.
 #   add_unit_test(<program> SOURCES <file>... LIBRARIES <target>... [TIMEOUT <seconds>] [COST <n>] [PARTS <n>]
-#     [PRECOMPILED <target>])
-# COST: ctest starts tests of a higher cost first. PRECOMPILED: the target whose precompiled headers it takes. The label of
-# its tests is the folder that they test: gnc/nn.
+#     [PRECOMPILED <target>] [SEPARATE_SOURCES])
+# COST: ctest starts tests of a higher cost first. PRECOMPILED: the target whose precompiled headers it takes. SEPARATE_SOURCES:
+# its sources use one name for different things, so that they are not compiled in groups. The label of its tests is the folder
+# that they test: gnc/nn.
 function(add_unit_test program)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT;COST;PARTS;PRECOMPILED" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "SEPARATE_SOURCES" "TIMEOUT;COST;PARTS;PRECOMPILED" "SOURCES;LIBRARIES")
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT ${test_timeout_s})
   endif()
@@ -31,6 +32,9 @@ function(add_unit_test program)
     target_compile_options(${program} PRIVATE $<$<CONFIG:Release>:-O1>)
   endif()
   use_precompiled_headers(${arg_PRECOMPILED} ${program})
+  if(arg_SEPARATE_SOURCES)
+    set_target_properties(${program} PROPERTIES UNITY_BUILD OFF)
+  endif()
   tested_folder(label ${arg_SOURCES})
   note_test_program(${program} ${label})
   if(NOT CMAKE_CROSSCOMPILING)

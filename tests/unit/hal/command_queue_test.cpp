@@ -8,7 +8,7 @@
 namespace tumblesight::hal {
 namespace {
 
-constexpr std::uint8_t kNoop = 1, kSetMode = 3, kModelLoad = 5, kSafe = 3;
+constexpr std::uint8_t kNoop = 1, kSetModeCode = 3, kModelLoad = 5, kSafeMode = 3;
 constexpr std::size_t kPlaces = 16;
 
 class CommandQueueTest : public ::testing::Test {
@@ -41,7 +41,7 @@ TEST_F(CommandQueueTest, DeliversCommandsInOrder) {
 TEST_F(CommandQueueTest, KeepsItsLastPlaces) {
   EXPECT_EQ(fill_with(fsw::packet_of(kModelLoad, {0, 0, 0, 0, 1})), kPlaces - CommandFilter::kReserved);
   EXPECT_EQ(fill_with(fsw::packet_of(kNoop)), CommandFilter::kReserved - CommandFilter::kReservedForSafe);
-  EXPECT_EQ(fill_with(fsw::packet_of(kSetMode, {kSafe})), CommandFilter::kReservedForSafe);
+  EXPECT_EQ(fill_with(fsw::packet_of(kSetModeCode, {kSafeMode})), CommandFilter::kReservedForSafe);
   EXPECT_EQ(dropped_by(CommandRefusal::kNoRoom), 6 * kPlaces - kPlaces);
   EXPECT_EQ(dropped_by(CommandRefusal::kNoRoom), 0U);
 }

@@ -10,7 +10,7 @@
 namespace tumblesight::fsw {
 namespace {
 
-bool is_allowed(std::size_t field, std::uint32_t value) {
+bool is_accepted(std::size_t field, std::uint32_t value) {
   ParameterTable table = kInitialTable;
   table.fields[field] = value;
   return first_wrong_field(table) == kTableFields;
@@ -51,10 +51,10 @@ TEST(ParameterTable, EveryFlippedBitIsRefusedAndChangesNothing) {
 TEST(ParameterTable, EveryParameterHasItsRangeAndStartsWithinIt) {
   for (std::size_t field = 0; field < kParameters; ++field) {
     const config::ParameterRule& rule = config::kParameterRules[field];
-    EXPECT_TRUE(is_allowed(field, rule.lowest)) << field;
-    EXPECT_TRUE(is_allowed(field, rule.highest)) << field;
-    EXPECT_FALSE(is_allowed(field, rule.lowest - 1)) << field;
-    EXPECT_FALSE(is_allowed(field, rule.highest + 1)) << field;
+    EXPECT_TRUE(is_accepted(field, rule.lowest)) << field;
+    EXPECT_TRUE(is_accepted(field, rule.highest)) << field;
+    EXPECT_FALSE(is_accepted(field, rule.lowest - 1)) << field;
+    EXPECT_FALSE(is_accepted(field, rule.highest + 1)) << field;
   }
   EXPECT_EQ(first_wrong_field(kInitialTable), kTableFields);
 }
@@ -62,15 +62,15 @@ TEST(ParameterTable, EveryParameterHasItsRangeAndStartsWithinIt) {
 TEST(ParameterTable, FaultRulesThatAreImpossibleOrProtectTheModelAreNotTaken) {
   for (const config::FaultRule& rule : config::kFaultRules) {
     const std::size_t field = field_of(rule.fault);
-    EXPECT_TRUE(is_allowed(field, kInitialTable.fields[field]));
-    EXPECT_EQ(is_allowed(field, rule_field(2, 5, 7, Response::kSafe)), rule.can_be_disabled);
-    EXPECT_EQ(is_allowed(field, rule_field(32, 32, 255, Response::kIgnore)), rule.can_be_disabled);
-    EXPECT_FALSE(is_allowed(field, rule_field(0, 5, 7, Response::kFlag))) << "no cycles";
-    EXPECT_FALSE(is_allowed(field, rule_field(2, 5, 0, Response::kFlag))) << "no good cycles";
-    EXPECT_FALSE(is_allowed(field, rule_field(6, 5, 7, Response::kFlag)))
+    EXPECT_TRUE(is_accepted(field, kInitialTable.fields[field]));
+    EXPECT_EQ(is_accepted(field, rule_field(2, 5, 7, Response::kSafe)), rule.can_be_disabled);
+    EXPECT_EQ(is_accepted(field, rule_field(32, 32, 255, Response::kIgnore)), rule.can_be_disabled);
+    EXPECT_FALSE(is_accepted(field, rule_field(0, 5, 7, Response::kFlag))) << "no cycles";
+    EXPECT_FALSE(is_accepted(field, rule_field(2, 5, 0, Response::kFlag))) << "no good cycles";
+    EXPECT_FALSE(is_accepted(field, rule_field(6, 5, 7, Response::kFlag)))
         << "more cycles than the window has";
-    EXPECT_FALSE(is_allowed(field, rule_field(6, 33, 7, Response::kFlag))) << "a window beyond the history";
-    EXPECT_FALSE(is_allowed(field, rule_field(2, 5, 7, static_cast<Response>(5)))) << "no such response";
+    EXPECT_FALSE(is_accepted(field, rule_field(6, 33, 7, Response::kFlag))) << "a window beyond the history";
+    EXPECT_FALSE(is_accepted(field, rule_field(2, 5, 7, static_cast<Response>(5)))) << "no such response";
   }
 }
 
@@ -189,7 +189,7 @@ TEST_F(Tables, FieldThatIsNotAllowedIsNamedAndTheTableNotActivated) {
     EXPECT_EQ(refused(), static_cast<std::int32_t>(field));
     step_commands({activate(table)});
     EXPECT_EQ(refused(), -3);
-    EXPECT_TRUE(is_allowed(field, active().fields[field]));
+    EXPECT_TRUE(is_accepted(field, active().fields[field]));
   }
 }
 

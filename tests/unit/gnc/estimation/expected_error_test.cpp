@@ -24,7 +24,7 @@ ErrorEvidence fixed(const Evidence& evidence) {
   return made;
 }
 
-double to_double(Fixed value) {
+double value_of(Fixed value) {
   return std::ldexp(value.raw(), -24);
 }
 
@@ -51,7 +51,7 @@ void for_each_evidence(Function function) {
 TEST(ExpectedError, WithoutAPoseIsThatOfNetworkAndFrame) {
   for_each_evidence([](const Evidence& e) {
     const double sum = 0.82 * logit(e) + 13.0 * e.misfit + 1.6 * innovation(e) + 2.3 * e.second_share - 5.5;
-    EXPECT_NEAR(to_double(expected_error_rad(fixed(e))), blended(e.network_rad, sum), 1e-4)
+    EXPECT_NEAR(value_of(expected_error_rad(fixed(e))), blended(e.network_rad, sum), 1e-4)
         << e.network_rad << ' ' << e.misfit << ' ' << e.innovation_rad << ' ' << e.second_share;
   });
 }
@@ -72,7 +72,7 @@ TEST(ExpectedError, WithAPoseGoesByItsDistanceAndWhatSpeaksAgainstIt) {
       if (evidence.silhouette_disagrees && !far) sum += 0.56;
       if (far) sum += 3.64;
       if (far && !evidence.ranges_disagree && !evidence.silhouette_disagrees) sum += 1.32;
-      EXPECT_NEAR(to_double(expected_error_rad(evidence)), blended(far ? e.network_rad : 0.03, sum), 1e-4)
+      EXPECT_NEAR(value_of(expected_error_rad(evidence)), blended(far ? e.network_rad : 0.03, sum), 1e-4)
           << bits << ' ' << e.network_rad << ' ' << e.misfit;
     }
   });

@@ -13,7 +13,7 @@ namespace tumblesight::gnc {
 namespace {
 
 constexpr std::int64_t kStart_ns = 1'000'000'000'000;
-constexpr FrameTrackerLimits kLimits{
+constexpr FrameTrackerLimits kTrackerLimits{
     {1'000'000, 2'970'000'000}, 21'600'000'000, 8'100'000'000, 10'000'000, kPi_urad, kPi_urad};
 
 QuaternionQ30 q30(const Eigen::Quaterniond& q) {
@@ -46,7 +46,7 @@ class Tracking : public ::testing::Test {
 
   std::unique_ptr<AttitudeEstimator<FixedPoint>> estimator =
       std::make_unique<AttitudeEstimator<FixedPoint>>();
-  FrameTrackerLimits limits = kLimits;
+  FrameTrackerLimits limits = kTrackerLimits;
   FrameTrackerState state;
   FrameOutcome outcome;
   std::int64_t now_ns = kStart_ns;

@@ -7,7 +7,7 @@
 namespace tumblesight::gnc {
 namespace {
 
-double to_double(Fixed value) {
+double real_of(Fixed value) {
   return std::ldexp(value.raw(), -24);
 }
 
@@ -29,8 +29,8 @@ TEST(PoseAgreement, OfAPoseIsTheAngleToItAndItsOwnUncertainty) {
       add_pose(pose, turned_about_x(0.4 + angle_rad), evidence);
       EXPECT_TRUE(evidence.has_pose);
       EXPECT_TRUE(evidence.lacks_motion);
-      EXPECT_NEAR(to_double(evidence.pose_error_rad),
-                  std::hypot(angle_rad, std::sqrt(2.0) * 1e-6 * sigma_urad), 1e-4)
+      EXPECT_NEAR(real_of(evidence.pose_error_rad), std::hypot(angle_rad, std::sqrt(2.0) * 1e-6 * sigma_urad),
+                  1e-4)
           << angle_rad << ' ' << sigma_urad;
     }
   }

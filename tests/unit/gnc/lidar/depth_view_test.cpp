@@ -16,7 +16,7 @@
 namespace tumblesight::gnc {
 namespace {
 
-constexpr DepthProjection kProjection{20000, 3000};
+constexpr DepthProjection kViewProjection{20000, 3000};
 constexpr double kDistance_m = 20.0;
 constexpr int kRays = 128;
 
@@ -71,7 +71,7 @@ Eigen::Vector3d centroid_m(const RangeImage& frame) {
 }
 
 std::unique_ptr<DepthImage> image_of(const RangeImage& frame,
-                                     const DepthProjection& projection = kProjection) {
+                                     const DepthProjection& projection = kViewProjection) {
   static DepthImageScratch scratch;
   auto image = std::make_unique<DepthImage>();
   EXPECT_EQ(make_depth_image(frame, projection, scratch, *image), FrameStatus::kOk);

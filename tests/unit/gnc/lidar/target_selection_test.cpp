@@ -19,9 +19,9 @@ namespace {
 constexpr std::uint32_t kRadius_mm = 3'000;
 
 // Gives the same numbers on every platform for the same seed.
-class Random {
+class Chances {
  public:
-  explicit Random(unsigned seed) : engine_(seed) {}
+  explicit Chances(unsigned seed) : engine_(seed) {}
   int below(int limit) { return static_cast<int>(engine_() % static_cast<unsigned>(limit)); }
   bool happens(double probability) { return static_cast<double>(engine_()) < probability * 4294967296.0; }
 
@@ -82,7 +82,7 @@ class TargetSelection : public testing::Test {
                                           [](std::uint16_t counts) { return counts != 0; }));
   }
 
-  Random random{7};
+  Chances random{7};
   std::unique_ptr<RangeImage> frame = [] {
     auto image = std::make_unique<RangeImage>();
     image->rays = 128;

@@ -9,7 +9,7 @@
 namespace tumblesight::gnc {
 namespace {
 
-constexpr double kTan = 0.2;
+constexpr double kTanHalfFov = 0.2;
 constexpr std::int64_t q30(double value) {
   return static_cast<std::int64_t>(value * (1 << 30));
 }
@@ -18,7 +18,7 @@ class TargetWindowTest : public testing::Test {
  protected:
   void use(int rays, double right, double down, double size) {
     frame->rays = static_cast<std::uint16_t>(rays);
-    make_window(*frame, {q30(kTan), q30(right), q30(down), q30(size), 3'000}, *window);
+    make_window(*frame, {q30(kTanHalfFov), q30(right), q30(down), q30(size), 3'000}, *window);
   }
   // Every return is the target's.
   void fill(double (*range_counts)(double row, double column)) {
@@ -50,10 +50,10 @@ class TargetWindowTest : public testing::Test {
 
 // Verifies TS-LID-110.
 TEST_F(TargetWindowTest, OfATargetThatCoversEnoughRaysHasTheFramesOwn) {
-  use(128, 0.0, 0.0, 2 * kTan * 91 / 128);
+  use(128, 0.0, 0.0, 2 * kTanHalfFov * 91 / 128);
   EXPECT_FALSE(window->is_resampled);
   EXPECT_EQ(window->rays, 128);
-  use(128, 0.0, 0.0, 2 * kTan * 89 / 128);
+  use(128, 0.0, 0.0, 2 * kTanHalfFov * 89 / 128);
   EXPECT_TRUE(window->is_resampled);
   EXPECT_EQ(window->rays, kWindowRays);
 }
@@ -68,8 +68,8 @@ TEST_F(TargetWindowTest, LiesAroundTheTarget) {
     const auto at = [ray](const WindowAxis& axis) {
       return (axis.first_q16 + static_cast<double>(axis.step_q16) * ray) / 65536.0;
     };
-    EXPECT_NEAR(at(window->columns), ((0.05 + 0.1 * end) / kTan + 1.0) * 64 - 0.5, 0.01);
-    EXPECT_NEAR(at(window->rows), ((-0.1 + 0.1 * end) / kTan + 1.0) * 64 - 0.5, 0.01);
+    EXPECT_NEAR(at(window->columns), ((0.05 + 0.1 * end) / kTanHalfFov + 1.0) * 64 - 0.5, 0.01);
+    EXPECT_NEAR(at(window->rows), ((-0.1 + 0.1 * end) / kTanHalfFov + 1.0) * 64 - 0.5, 0.01);
   }
 }
 
@@ -77,7 +77,7 @@ TEST_F(TargetWindowTest, LiesAroundTheTarget) {
 TEST_F(TargetWindowTest, SamplesARampExactly) {
   const auto ramp = [](double row, double column) { return 8000.0 + 6.0 * column - 4.0 * row; };
   for (const int rays : {16, 33, 64, 128}) {
-    use(rays, 0.02, 0.01, 2 * kTan * 0.5);
+    use(rays, 0.02, 0.01, 2 * kTanHalfFov * 0.5);
     fill(ramp);
     for (int row = 0; row < kWindowRays; ++row) {
       const auto ranges = sampled(row);
@@ -93,7 +93,7 @@ TEST_F(TargetWindowTest, SamplesARampExactly) {
 
 // Verifies TS-LID-110.
 TEST_F(TargetWindowTest, PutsAnEdgeInTheMiddleBetweenRays) {
-  use(64, 0.0, 0.0, 2 * kTan * 0.5);
+  use(64, 0.0, 0.0, 2 * kTanHalfFov * 0.5);
   fill([](double, double column) { return column < 30 ? 8000.0 : 0.0; });
   const auto ranges = sampled(kWindowRays / 2);
   for (int column = 0; column < kWindowRays; ++column) {
@@ -105,7 +105,7 @@ TEST_F(TargetWindowTest, PutsAnEdgeInTheMiddleBetweenRays) {
 
 // Verifies TS-LID-110.
 TEST_F(TargetWindowTest, DoesNotMixSurfacesThatAreARadiusApart) {
-  use(64, 0.0, 0.0, 2 * kTan * 0.5);
+  use(64, 0.0, 0.0, 2 * kTanHalfFov * 0.5);
   fill([](double row, double column) { return row + column < 63 ? 8000.0 : 8500.0; });
   for (int row = 0; row < kWindowRays; ++row) {
     for (const std::uint16_t range : sampled(row))

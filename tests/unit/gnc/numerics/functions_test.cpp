@@ -10,10 +10,10 @@
 namespace tumblesight::gnc {
 namespace {
 
-constexpr double kUnit = 1.0 / (1 << 24);
+constexpr double kUnitInTheLast = 1.0 / (1 << 24);
 
-double value_of(Fixed x) {
-  return x.raw() * kUnit;
+double to_double(Fixed x) {
+  return x.raw() * kUnitInTheLast;
 }
 
 // Largest error of `function` against `exact` over a sweep of the whole range.
@@ -22,8 +22,8 @@ double worst_error(Function function, Exact exact) {
   double worst = 0.0;
   for (std::int64_t raw = -Fixed::kLargestRaw; raw <= Fixed::kLargestRaw; raw += 4999) {
     const Fixed x = Fixed::from_raw(raw);
-    const double expected = std::min(128.0 - kUnit, exact(value_of(x)));
-    worst = std::max(worst, std::fabs(value_of(function(x)) - expected));
+    const double expected = std::min(128.0 - kUnitInTheLast, exact(to_double(x)));
+    worst = std::max(worst, std::fabs(to_double(function(x)) - expected));
   }
   return worst;
 }
@@ -31,14 +31,14 @@ double worst_error(Function function, Exact exact) {
 TEST(Sqrt, ErrorIsAtMostOneUnit) {
   EXPECT_LE(
       worst_error([](Fixed x) { return sqrt(x); }, [](double x) { return std::sqrt(std::max(0.0, x)); }),
-      kUnit);
+      kUnitInTheLast);
   EXPECT_EQ(sqrt(Fixed(4.0)), Fixed(2.0));
   EXPECT_EQ(sqrt(Fixed(-1.0)), Fixed());
 }
 
 TEST(Exp, ErrorIsAtMostOneUnitPlusRelative3em9) {
   const auto exact = [](double x) { return std::exp(x); };
-  EXPECT_LE(worst_error([](Fixed x) { return exp(x); }, exact), 128.0 * 3e-9 + kUnit);
+  EXPECT_LE(worst_error([](Fixed x) { return exp(x); }, exact), 128.0 * 3e-9 + kUnitInTheLast);
   EXPECT_EQ(exp(Fixed()), Fixed(1.0));
   EXPECT_EQ(exp(Fixed(127.0)).raw(), Fixed::kLargestRaw);
   EXPECT_EQ(exp(Fixed(-127.0)), Fixed());
@@ -47,7 +47,7 @@ TEST(Exp, ErrorIsAtMostOneUnitPlusRelative3em9) {
 TEST(Sigmoid, ErrorIsAtMostTwoUnits) {
   EXPECT_LE(
       worst_error([](Fixed x) { return sigmoid(x); }, [](double x) { return 1.0 / (1.0 + std::exp(-x)); }),
-      2.0 * kUnit);
+      2.0 * kUnitInTheLast);
   EXPECT_EQ(sigmoid(Fixed()), Fixed(0.5));
 }
 

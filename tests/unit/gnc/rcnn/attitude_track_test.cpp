@@ -15,11 +15,11 @@ namespace tumblesight::gnc {
 namespace {
 
 using Head = HeadOutput<float>;
-constexpr Head kNoCorrection{};
+constexpr Head kUncorrected{};
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 const Eigen::Vector3d kRate = 9.0 * kDegree * Eigen::Vector3d(0.4, -0.3, 0.8).normalized();
-const Eigen::Matrix3d kStart = turn(2.2, {1.0, -2.0, 0.5});
+const Eigen::Matrix3d kStartAttitude = turn(2.2, {1.0, -2.0, 0.5});
 // A symmetry of the target.
 const Eigen::Matrix3d kSymmetry = turn(M_PI, {0.0, 1.0, 1.0});
 
@@ -40,16 +40,16 @@ double rate_error(const AttitudeTrack<float>& track, const Eigen::Vector3d& rate
   return (current_motion(track).rate_lrf.cast<double>() - rate).norm();
 }
 
-// The track of a spin at kRate from kStart after `frames` measurements without error.
+// The track of a spin at kRate from kStartAttitude after `frames` measurements without error.
 AttitudeTrack<float> converged_track(int frames) {
   AttitudeTrack<float> track;
-  Eigen::Matrix3d truth = kStart;
+  Eigen::Matrix3d truth = kStartAttitude;
   for (int k = 0; k < frames; ++k, truth = turn(kRate) * truth)
-    follow(make_frame({{truth, 1.0F}}), kNoCorrection, track);
+    follow(make_frame({{truth, 1.0F}}), kUncorrected, track);
   return track;
 }
 Eigen::Matrix3d truth_after(int frames) {
-  return turn(frames * kRate) * kStart;
+  return turn(frames * kRate) * kStartAttitude;
 }
 
 Inertia<float> slender_body() {
@@ -71,7 +71,7 @@ TEST(AttitudeTrack, FollowsTheDoubleReferenceOverSequences) {
   const Inertia<float> inertia = slender_body();
   int compared = 0, tumbling = 0, merged = 0, corrected = 0;
   for (int sequence = 0; sequence < 20; ++sequence) {
-    Motion<float> truth{kStart.cast<float>(), random_vector(0.3F)};
+    Motion<float> truth{kStartAttitude.cast<float>(), random_vector(0.3F)};
     AttitudeTrack<float> track;
     ReferenceTrack reference(inertia.tensor_trf.cast<double>());
     for (int k = 0; k < 15; ++k, truth = propagate<float>(truth, inertia)) {
@@ -121,7 +121,7 @@ TEST(AttitudeTrack, FollowsTheDoubleReferenceOverSequences) {
 }
 
 TEST(AttitudeTrack, StartsWithTheLikeliestHypothesisAtRest) {
-  const Hypotheses<float> frame = make_frame({{kStart, 0.6F}, {kStart * kSymmetry, 0.4F}});
+  const Hypotheses<float> frame = make_frame({{kStartAttitude, 0.6F}, {kStartAttitude * kSymmetry, 0.4F}});
   const Prediction<float> prediction =
       predict<float>(AttitudeTrack<float>{}, motion_models<float>(Inertia<float>{}), frame);
   for (const Motion<float>& motion : prediction.motion) {
@@ -131,7 +131,7 @@ TEST(AttitudeTrack, StartsWithTheLikeliestHypothesisAtRest) {
   AttitudeTrack<float> track;
   const TrackedAttitude<float> tracked =
       advance<float>(frame, prediction, head_with(kErrorLogit, -3.0F), track);
-  EXPECT_LT(angle_between(tracked.r_lrf_trf, kStart), 1e-6);
+  EXPECT_LT(angle_between(tracked.r_lrf_trf, kStartAttitude), 1e-6);
   EXPECT_NEAR(tracked.predicted_error_rad, M_PI / (1.0 + std::exp(3.0)), 1e-6);
   EXPECT_EQ(track.frames, 1U);
   EXPECT_EQ(current_motion(track).rate_lrf.norm(), 0.0F);
@@ -139,7 +139,7 @@ TEST(AttitudeTrack, StartsWithTheLikeliestHypothesisAtRest) {
 
 TEST(AttitudeTrack, GivesTheLstmTheHypothesesRelativeToThePrediction) {
   const Eigen::Matrix3d predicted = turn(0.7, {1.0, 1.0, 0.0});
-  const Hypotheses<float> frame = make_frame({{kStart, 0.75F}, {kStart * kSymmetry, 0.25F}});
+  const Hypotheses<float> frame = make_frame({{kStartAttitude, 0.75F}, {kStartAttitude * kSymmetry, 0.25F}});
   Features<Float32> features;
   for (std::size_t i = 0; i < features.size(); ++i) features[i] = static_cast<float>(i);
   LstmInput<Float32> input;
@@ -165,23 +165,23 @@ TEST(AttitudeTrack, ContinuesAtItsRateIfTheHeadSelectsThePrediction) {
 }
 
 TEST(AttitudeTrack, UsesTheAnchorThatTheHeadSelects) {
-  const Eigen::Matrix3d other = kStart * kSymmetry;
+  const Eigen::Matrix3d other = kStartAttitude * kSymmetry;
   for (const int anchor : {0, 1, 5}) {
     AttitudeTrack<float> track;
-    const Hypotheses<float> frame = make_frame({{kStart, 0.6F}, {other, 0.4F}});
+    const Hypotheses<float> frame = make_frame({{kStartAttitude, 0.6F}, {other, 0.4F}});
     const TrackedAttitude<float> tracked = follow(frame, head_with(anchor, 60.0F), track);
     EXPECT_LT(angle_between(tracked.r_lrf_trf, frame.r_lrf_trf[anchor].cast<double>()), 1e-6) << anchor;
   }
 }
 
 TEST(AttitudeTrack, WeighsCandidatesByTheHeadsCorrectionUpToItsBound) {
-  const Eigen::Matrix3d near = turn(6.0 * kDegree, {0.3, 1.0, 0.2}) * kStart;
+  const Eigen::Matrix3d near = turn(6.0 * kDegree, {0.3, 1.0, 0.2}) * kStartAttitude;
   const auto distance_to_start = [&](float correction) {
     AttitudeTrack<float> track;
-    return angle_between(follow(make_frame({{kStart, 0.5F}, {near, 0.5F}}),
+    return angle_between(follow(make_frame({{kStartAttitude, 0.5F}, {near, 0.5F}}),
                                 head_with(kWeightCorrections + 1, correction), track)
                              .r_lrf_trf,
-                         kStart);
+                         kStartAttitude);
   };
   EXPECT_NEAR(distance_to_start(0.0F), 3.0 * kDegree, 2e-3);
   EXPECT_NEAR(distance_to_start(std::log(2.0F)), 4.0 * kDegree, 2e-3);
@@ -207,11 +207,11 @@ TEST(AttitudeTrack, IgnoresAlternativesWhateverTheirProbability) {
 // Verifies TS-EST-130.
 TEST(AttitudeTrack, KeepsItsRateWhenItChangesToASymmetricAttitude) {
   AttitudeTrack<float> track = converged_track(12);
-  follow(make_frame({{truth_after(12) * kSymmetry, 1.0F}}), kNoCorrection, track);
+  follow(make_frame({{truth_after(12) * kSymmetry, 1.0F}}), kUncorrected, track);
   EXPECT_LT(angle_between(current_motion(track).r_lrf_trf, truth_after(12) * kSymmetry), 1e-5);
   EXPECT_LT(rate_error(track), 1e-4);
   const Prediction<float> next =
-      predict<float>(track, motion_models<float>(Inertia<float>{}), make_frame({{kStart, 1.0F}}));
+      predict<float>(track, motion_models<float>(Inertia<float>{}), make_frame({{kStartAttitude, 1.0F}}));
   EXPECT_LT(angle_between(next.r_lrf_trf(), truth_after(13) * kSymmetry), 2e-4);
 }
 
@@ -223,7 +223,7 @@ TEST(AttitudeTrack, StaysOnItsBranchIfTheHeadSelectsThePrediction) {
     const float probability = k % 2 == 0 ? 0.6F : 0.4F;
     const Hypotheses<float> frame =
         make_frame({{truth_after(k), probability}, {truth_after(k) * kSymmetry, 1.0F - probability}});
-    const Head head = k == 0 ? kNoCorrection : head_with(kPredicted, 50.0F);
+    const Head head = k == 0 ? kUncorrected : head_with(kPredicted, 50.0F);
     EXPECT_LT(angle_between(follow(frame, head, track).r_lrf_trf, truth_after(k)), 0.05 * kDegree) << k;
   }
   EXPECT_LT(rate_error(track), 1e-3);
@@ -246,9 +246,9 @@ TEST(AttitudeTrack, FindsTheRateAtAnyTimeBetweenFrames) {
     for (const double rate_deg : {0.0, 9.0, 54.0}) {
       const Eigen::Vector3d rate = rate_deg * kDegree * kRate.normalized();
       AttitudeTrack<float> track;
-      Eigen::Matrix3d truth = kStart;
+      Eigen::Matrix3d truth = kStartAttitude;
       for (int k = 0; k < 12; ++k, truth = turn(periods * rate) * truth)
-        follow(make_frame({{truth, 1.0F}}), kNoCorrection, track, {}, interval_of(periods));
+        follow(make_frame({{truth, 1.0F}}), kUncorrected, track, {}, interval_of(periods));
       EXPECT_LT(rate_error(track, rate), 0.2 * kDegree) << periods << ' ' << rate_deg;
     }
   }
@@ -261,7 +261,7 @@ bool follow_without_rate(const Hypotheses<float>& frame, const FrameInterval& in
       predict<float>(track, motion_models<float>(Inertia<float>{}), frame, interval);
   const bool confirmed = keep_confirmed<float>(frame, interval, prediction, track);
   EXPECT_TRUE(confirmed || !prediction.has_track);
-  advance<float>(frame, prediction, kNoCorrection, track);
+  advance<float>(frame, prediction, kUncorrected, track);
   return confirmed;
 }
 
@@ -273,7 +273,7 @@ TEST(AttitudeTrack, FollowsASpinWithoutKnowingItsRate) {
     const Eigen::Vector3d rate = 2.7 * rate_deg_s * kDegree * kRate.normalized();
     const double others = rate_deg_s > 15.0 ? 2.7 * 36.0 * kDegree : 0.0;
     AttitudeTrack<float> track;
-    Eigen::Matrix3d truth = kStart;
+    Eigen::Matrix3d truth = kStartAttitude;
     for (int k = 0; k < 12; ++k, truth = turn(periods * rate) * truth) {
       const bool confirmed = follow_without_rate(make_frame({{truth, 1.0F}}), interval_of(periods), track);
       EXPECT_LT(angle_between(current_motion(track).r_lrf_trf, truth), 0.5 * kDegree) << rate_deg_s << k;
@@ -285,8 +285,8 @@ TEST(AttitudeTrack, FollowsASpinWithoutKnowingItsRate) {
 
 // Verifies TS-EST-182, TS-EST-184. A prediction that the hypotheses do not confirm has no effect.
 TEST(AttitudeTrack, AWrongRateDoesNotSpoilTheAttitude) {
-  const Eigen::Matrix3d other = kStart * turn(std::acos(-1.0), {0.0, 0.0, 1.0});
-  const Hypotheses<float> frame = make_frame({{kStart, 0.6F}, {other, 0.4F}});
+  const Eigen::Matrix3d other = kStartAttitude * turn(std::acos(-1.0), {0.0, 0.0, 1.0});
+  const Hypotheses<float> frame = make_frame({{kStartAttitude, 0.6F}, {other, 0.4F}});
   AttitudeTrack<float> alone, track = converged_track(12);
   FrameInterval interval = interval_of(4.0);
   interval.q_now_last = q30(Eigen::Quaterniond(turn(0.4, {0.0, 0.0, 1.0})));
@@ -294,11 +294,11 @@ TEST(AttitudeTrack, AWrongRateDoesNotSpoilTheAttitude) {
       turn(0.4, {0.0, 0.0, 1.0}) * Eigen::Matrix3d(current_motion(track).r_lrf_trf.cast<double>());
   EXPECT_FALSE(follow_without_rate(frame, interval, track));
   advance<float>(frame, predict<float>(alone, motion_models<float>(Inertia<float>{}), frame, {}),
-                 kNoCorrection, alone);
+                 kUncorrected, alone);
   EXPECT_EQ(current_motion(track).r_lrf_trf, current_motion(alone).r_lrf_trf);
   EXPECT_EQ(track.frames, 1U);
   const Eigen::Vector3d rate = current_motion(track).rate_lrf.cast<double>();
-  EXPECT_LT(angle_between(Eigen::Matrix3d(turn(4.0 * rate) * last), kStart), 0.5 * kDegree)
+  EXPECT_LT(angle_between(Eigen::Matrix3d(turn(4.0 * rate) * last), kStartAttitude), 0.5 * kDegree)
       << "the rate from the last attitude";
 }
 
@@ -323,11 +323,12 @@ TEST(AttitudeTrack, BeginsAgainAtItsLastAttitude) {
 TEST(AttitudeTrack, CoastsOverGapsOfAnyLength) {
   for (const double gap : {0.3, 1.5, 2.0, 3.0, 7.0, 8.0}) {
     AttitudeTrack<float> track = converged_track(12);
-    const Eigen::Matrix3d truth = turn((11.0 + gap) * kRate) * kStart;
-    const Prediction<float> prediction = predict<float>(track, motion_models<float>(Inertia<float>{}),
-                                                        make_frame({{kStart, 1.0F}}), interval_of(gap));
+    const Eigen::Matrix3d truth = turn((11.0 + gap) * kRate) * kStartAttitude;
+    const Prediction<float> prediction =
+        predict<float>(track, motion_models<float>(Inertia<float>{}), make_frame({{kStartAttitude, 1.0F}}),
+                       interval_of(gap));
     EXPECT_LT(angle_between(prediction.r_lrf_trf(), truth), 1e-3) << gap;
-    follow(make_frame({{truth, 1.0F}}), kNoCorrection, track, {}, interval_of(gap));
+    follow(make_frame({{truth, 1.0F}}), kUncorrected, track, {}, interval_of(gap));
     EXPECT_LT(rate_error(track), 1e-3) << gap;
   }
 }
@@ -337,12 +338,12 @@ TEST(AttitudeTrack, FollowsIrregularFrames) {
   std::mt19937 engine(8);
   std::uniform_real_distribution<double> any(0.1, 2.2);
   AttitudeTrack<float> track;
-  Eigen::Matrix3d truth = kStart;
-  follow(make_frame({{truth, 1.0F}}), kNoCorrection, track);
+  Eigen::Matrix3d truth = kStartAttitude;
+  follow(make_frame({{truth, 1.0F}}), kUncorrected, track);
   for (int k = 0; k < 40; ++k) {
     const double periods = any(engine);
     truth = turn(periods * 4.0 * kRate) * truth;
-    follow(make_frame({{truth, 1.0F}}), kNoCorrection, track, {}, interval_of(periods));
+    follow(make_frame({{truth, 1.0F}}), kUncorrected, track, {}, interval_of(periods));
     if (k > 10) {
       EXPECT_LT(rate_error(track, 4.0 * kRate), 0.1 * kDegree) << k;
     }
@@ -361,8 +362,8 @@ TEST(AttitudeTrack, FollowsASpinFromATurningChaser) {
     time += periods;
     FrameInterval interval = interval_of(periods);
     interval.q_now_last = q30(Eigen::Quaterniond(lrf().transpose() * before));
-    const Eigen::Matrix3d truth = lrf().transpose() * turn(time * kRate) * kStart;
-    follow(make_frame({{truth, 1.0F}}), kNoCorrection, track, {}, interval);
+    const Eigen::Matrix3d truth = lrf().transpose() * turn(time * kRate) * kStartAttitude;
+    follow(make_frame({{truth, 1.0F}}), kUncorrected, track, {}, interval);
     if (k > 3) {
       EXPECT_LT(rate_error(track, lrf().transpose() * kRate), 0.1 * kDegree) << k;
     }
@@ -374,7 +375,7 @@ TEST(AttitudeTrack, FindsTheMotionModel) {
   const MotionModels<float> motion_models = gnc::motion_models<float>(slender_body());
   for (int motion_model = 0; motion_model < kMotionModels; ++motion_model) {
     SCOPED_TRACE(motion_model);
-    Motion<float> truth{kStart.cast<float>(),
+    Motion<float> truth{kStartAttitude.cast<float>(),
                         (20.0 * kDegree * Eigen::Vector3d(0.4, -0.3, 0.8).normalized()).cast<float>()};
     AttitudeTrack<float> track;
     for (int k = 0; k < 12; ++k, truth = propagate<float>(truth, motion_models[motion_model])) {
@@ -386,7 +387,8 @@ TEST(AttitudeTrack, FindsTheMotionModel) {
       }
     }
     EXPECT_EQ(track.motion_model(), motion_model);
-    EXPECT_EQ(predict<float>(track, motion_models, make_frame({{kStart, 1.0F}})).motion_model, motion_model);
+    EXPECT_EQ(predict<float>(track, motion_models, make_frame({{kStartAttitude, 1.0F}})).motion_model,
+              motion_model);
     EXPECT_EQ(track.log_likelihood[motion_model], 0.0F);
     EXPECT_LT(track.log_likelihood[motion_model == kSpinModel ? kTumbleModel : kSpinModel], -2.0F);
   }
@@ -394,7 +396,7 @@ TEST(AttitudeTrack, FindsTheMotionModel) {
 
 TEST(AttitudeTrack, FindsNoMotionModelFromUncertainMeasurements) {
   const Inertia<float> inertia = slender_body();
-  Motion<float> truth{kStart.cast<float>(), {0.1F, -0.08F, 0.2F}};
+  Motion<float> truth{kStartAttitude.cast<float>(), {0.1F, -0.08F, 0.2F}};
   AttitudeTrack<float> track;
   for (int k = 0; k < 12; ++k, truth = propagate<float>(truth, inertia)) {
     follow(make_frame({{truth.r_lrf_trf.cast<double>(), 1.0F}}), head_with(kErrorLogit, 0.0F), track,
@@ -417,8 +419,8 @@ TEST(AttitudeTrack, StartsOverFromADamagedTrack) {
     AttitudeTrack<float> fresh;
     for (int k = 12; k < 16; ++k) {
       const Hypotheses<float> frame = make_frame({{truth_after(k), 1.0F}});
-      const TrackedAttitude<float> tracked = follow(frame, kNoCorrection, track);
-      const TrackedAttitude<float> expected = follow(frame, kNoCorrection, fresh);
+      const TrackedAttitude<float> tracked = follow(frame, kUncorrected, track);
+      const TrackedAttitude<float> expected = follow(frame, kUncorrected, fresh);
       EXPECT_EQ(tracked.r_lrf_trf, expected.r_lrf_trf);
       EXPECT_EQ(current_motion(track).rate_lrf, current_motion(fresh).rate_lrf);
       EXPECT_EQ(track.frames, fresh.frames);
@@ -430,11 +432,11 @@ TEST(AttitudeTrack, LosesOneFrameToANonFiniteAnchor) {
   AttitudeTrack<float> track = converged_track(12);
   Hypotheses<float> damaged = make_frame({{truth_after(12), 1.0F}});
   damaged.r_lrf_trf[0](0, 0) = kNan;
-  EXPECT_FALSE(follow(damaged, kNoCorrection, track).r_lrf_trf.allFinite());
+  EXPECT_FALSE(follow(damaged, kUncorrected, track).r_lrf_trf.allFinite());
   AttitudeTrack<float> fresh;
   for (int k = 13; k < 16; ++k) {
     const Hypotheses<float> frame = make_frame({{truth_after(k), 1.0F}});
-    EXPECT_EQ(follow(frame, kNoCorrection, track).r_lrf_trf, follow(frame, kNoCorrection, fresh).r_lrf_trf);
+    EXPECT_EQ(follow(frame, kUncorrected, track).r_lrf_trf, follow(frame, kUncorrected, fresh).r_lrf_trf);
   }
 }
 
@@ -442,7 +444,7 @@ TEST(AttitudeTrack, IgnoresANonFiniteHypothesisThatIsNotTheAnchor) {
   AttitudeTrack<float> track = converged_track(12);
   Hypotheses<float> damaged = make_frame({{truth_after(12), 1.0F}});
   damaged.r_lrf_trf[3].setConstant(kNan);
-  EXPECT_LT(angle_between(follow(damaged, kNoCorrection, track).r_lrf_trf, truth_after(12)), 1e-4);
+  EXPECT_LT(angle_between(follow(damaged, kUncorrected, track).r_lrf_trf, truth_after(12)), 1e-4);
   EXPECT_LT(rate_error(track), 1e-4);
 }
 
@@ -458,7 +460,7 @@ TEST(AttitudeTrack, GivesUnitQuaternionsForAnyInput) {
   };
   for (int i = 0; i < 5000; ++i) {
     AttitudeTrack<float> track = converged_track(static_cast<int>(bits(engine) % 4));
-    Hypotheses<float> frame = make_frame({{truth_after(3), 0.7F}, {kStart, 0.3F}});
+    Hypotheses<float> frame = make_frame({{truth_after(3), 0.7F}, {kStartAttitude, 0.3F}});
     Head head{};
     damage(head.data(), head.size());
     if (i % 2 == 0) damage(frame.r_lrf_trf[i % 8].data(), 9);
@@ -479,7 +481,7 @@ TEST(AttitudeTrack, GivesUnitQuaternionsForAnyInput) {
 // Verifies TS-EST-140.
 TEST(AttitudeTrack, AMotionModelThatLostTheTargetDoesNotWinAndFindsItAgain) {
   const Inertia<float> inertia = slender_body();
-  Motion<float> truth{kStart.cast<float>(),
+  Motion<float> truth{kStartAttitude.cast<float>(),
                       (20.0 * kDegree * Eigen::Vector3d(0.4, -0.3, 0.8).normalized()).cast<float>()};
   AttitudeTrack<float> track;
   std::mt19937 engine(9);
@@ -490,7 +492,7 @@ TEST(AttitudeTrack, AMotionModelThatLostTheTargetDoesNotWinAndFindsItAgain) {
     const double y = normal(engine);
     const double z = normal(engine);
     const Eigen::Matrix3d seen = turn({x, y, z}) * exact;
-    const Head head = k < 6 ? kNoCorrection : head_with(kPredicted, 50.0F);
+    const Head head = k < 6 ? kUncorrected : head_with(kPredicted, 50.0F);
     const TrackedAttitude<float> tracked = follow(make_frame({{seen, 1.0F}}), head, track, inertia);
     EXPECT_LT(angle_between(tracked.r_lrf_trf, exact), 6.0 * kDegree) << "frame " << k;
     for (const Motion<float>& motion : track.motion) {
@@ -505,7 +507,7 @@ TEST(AttitudeTrack, AStateWithoutARotationIsReset) {
   AttitudeTrack<float> track;
   track.frames = 5;
   track.motion[0].r_lrf_trf.setZero();
-  const Eigen::Matrix3d attitude = kStart;
+  const Eigen::Matrix3d attitude = kStartAttitude;
   const TrackedAttitude<float> tracked =
       follow(make_frame({{attitude, 1.0F}}), head_with(kPredicted, 50.0F), track, slender_body());
   EXPECT_LT(angle_between(tracked.r_lrf_trf, attitude), 0.1 * kDegree);

@@ -16,7 +16,7 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
+constexpr double kDegree_rad = 0.017453292519943295;
 constexpr TemplateMatcherSettings kSmall{300, 24, 8, 8, AlignmentPairs::kRangesAndSilhouette};
 
 class TemplateMatcherTest : public ::testing::Test {
@@ -42,7 +42,7 @@ class TemplateMatcherTest : public ::testing::Test {
   static double error_deg(const FrameTruth& truth, const gnc::RangeImage& frame) {
     const TemplateMatcher::Result result = matcher_->match(frame);
     EXPECT_TRUE(result.valid);
-    return truth.q_lrf_trf.angularDistance(result.q_lrf_trf) / kDegree;
+    return truth.q_lrf_trf.angularDistance(result.q_lrf_trf) / kDegree_rad;
   }
 
   static std::unique_ptr<FlashLidar> lidar_;

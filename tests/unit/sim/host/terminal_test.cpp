@@ -190,7 +190,7 @@ TEST(WriteFile, IsNotLedAstrayByWhatHasTheNameOfItsPartialFile) {
   EXPECT_THROW(write_file(path, "newer"), std::runtime_error);
 }
 
-constexpr uid_t kOther = 65534;
+constexpr uid_t kOtherUser = 65534;
 
 // As /tmp, where every user may make files and only the owner may delete one.
 TEST(WriteFile, RefusesWhatAnotherUserHasPutIntoASharedFolder) {
@@ -205,7 +205,7 @@ TEST(WriteFile, RefusesWhatAnotherUserHasPutIntoASharedFolder) {
       std::filesystem::create_symlink(own, path);
     else
       ASSERT_EQ(mkfifo(path.c_str(), 0666), 0);
-    ASSERT_EQ(lchown(path.c_str(), kOther, kOther), 0);
+    ASSERT_EQ(lchown(path.c_str(), kOtherUser, kOtherUser), 0);
     EXPECT_NE(fault_of_place(path), "");
     EXPECT_THROW(write_file(path, "led astray"), std::runtime_error);
   }
@@ -213,9 +213,9 @@ TEST(WriteFile, RefusesWhatAnotherUserHasPutIntoASharedFolder) {
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(precious), {}), "precious");
   std::filesystem::remove(path);
   std::ofstream(path) << "of somebody else";
-  ASSERT_EQ(chown(path.c_str(), kOther, kOther), 0);
+  ASSERT_EQ(chown(path.c_str(), kOtherUser, kOtherUser), 0);
   EXPECT_EQ(fault_of_place(path), "") << "root may replace it";
-  ASSERT_EQ(seteuid(kOther - 1), 0);
+  ASSERT_EQ(seteuid(kOtherUser - 1), 0);
   EXPECT_NE(fault_of_place(path), "") << "found out before the run, not by rename() after it";
   ASSERT_EQ(seteuid(0), 0);
 }
@@ -228,7 +228,7 @@ TEST(WriteFile, TakesALinkOfTheOneWhoOwnsTheFolder) {
   write_file(file, "old");
   std::filesystem::create_symlink("report.html", link);
   for (const std::string& path : {folder.path(""), link, file})
-    ASSERT_EQ(lchown(path.c_str(), kOther, kOther), 0);
+    ASSERT_EQ(lchown(path.c_str(), kOtherUser, kOtherUser), 0);
   write_file(link, "new");
   std::ifstream written(file);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(written), {}), "new");

@@ -16,7 +16,7 @@ namespace {
 constexpr double kSwath_m = 8.0;
 
 // Two sequences of two frames; every attitude 0.1 rad off, the single frame's 0.5 rad.
-SilRunResult run() {
+SilRunResult two_sequences() {
   SilRunResult made;
   for (std::uint32_t i = 0; i < 4; ++i) {
     StepResult step;
@@ -47,7 +47,7 @@ SilRunSetup setup() {
 
 // The same with verified poses in the second frames: 0.01 rad, 5 mm across and 10 mm along off.
 SilRunResult run_with_poses() {
-  SilRunResult made = run();
+  SilRunResult made = two_sequences();
   for (StepResult& step : made.steps) {
     step.truth.offset_swaths = {0.25, 0.0};
     if (step.frame_index == 0) continue;
@@ -63,7 +63,7 @@ SilRunResult run_with_poses() {
 }
 
 TEST(RunJson, HasExactlyTheAgreedKeys) {
-  const nlohmann::ordered_json json = run_json(setup(), run());
+  const nlohmann::ordered_json json = run_json(setup(), two_sequences());
   std::string keys;
   for (const auto& [key, value] : json.items()) keys += key + " ";
   EXPECT_EQ(keys,
@@ -83,18 +83,18 @@ TEST(RunJson, HoldsTheComparisonWithTheFloat32Reference) {
   numerics.float32 = summarise({1.0, 2.0});
   numerics.difference = summarise({0.25});
   numerics.largest_difference_deg = 0.5;
-  const nlohmann::ordered_json json = run_json(setup(), run(), numerics);
+  const nlohmann::ordered_json json = run_json(setup(), two_sequences(), numerics);
   EXPECT_EQ(json["float32"]["mean_deg"], 1.5);
   EXPECT_EQ(json["difference_to_float32"]["mean_deg"], 0.25);
   EXPECT_EQ(json["difference_to_float32"]["max_deg"], 0.5);
 }
 
 TEST(RunFaults, AreNoneOfAGoodRun) {
-  EXPECT_TRUE(run_faults(run()).empty());
+  EXPECT_TRUE(run_faults(two_sequences()).empty());
 }
 
 TEST(RunFaults, NameAnEarlyEndAndTheStepsMissed) {
-  SilRunResult cut = run();
+  SilRunResult cut = two_sequences();
   cut.steps.pop_back();
   cut.steps_missed = 1;
   cut.failure = "the flight program has ended";
@@ -105,7 +105,7 @@ TEST(RunFaults, NameAnEarlyEndAndTheStepsMissed) {
 }
 
 TEST(RunFaults, AreNoneWhereANewerFrameOfTheSameCycleWasUsed) {
-  SilRunResult fast = run();
+  SilRunResult fast = two_sequences();
   fast.steps[1].answered = false;
   fast.frames_superseded = 1;
   EXPECT_TRUE(run_faults(fast).empty());
@@ -114,7 +114,7 @@ TEST(RunFaults, AreNoneWhereANewerFrameOfTheSameCycleWasUsed) {
 }
 
 TEST(RunFaults, NameAFlightProgramWithoutAModel) {
-  SilRunResult safe = run();
+  SilRunResult safe = two_sequences();
   for (StepResult& step : safe.steps) {
     step.attitude.validity = hal::Validity::kStandby;
     step.telemetry.mode = hal::Mode::kSafe;
@@ -127,7 +127,7 @@ TEST(RunFaults, NameAFlightProgramWithoutAModel) {
 
 // Verifies TS-SIL-110.
 TEST(RunFaults, NameRefusedTelecommands) {
-  SilRunResult refusing = run();
+  SilRunResult refusing = two_sequences();
   refusing.steps.back().telemetry.commands_refused = 1;
   const std::vector<std::string> found = run_faults(refusing);
   ASSERT_EQ(found.size(), 1U);
@@ -135,7 +135,7 @@ TEST(RunFaults, NameRefusedTelecommands) {
 }
 
 TEST(RunFaults, DoNotNameAFrameThatOwesNoAttitude) {
-  SilRunResult disturbed = run();
+  SilRunResult disturbed = two_sequences();
   disturbed.steps[0].truth.lost = true;
   disturbed.steps[0].attitude.validity = hal::Validity::kNoFrame;
   disturbed.steps[2].truth.frozen_for = 1;
@@ -145,12 +145,12 @@ TEST(RunFaults, DoNotNameAFrameThatOwesNoAttitude) {
 }
 
 TEST(StandingFaults, AreCountedByStepAndSequence) {
-  SilRunResult faulty = run();
+  SilRunResult faulty = two_sequences();
   const auto bit = [](hal::Fault fault) { return 1U << static_cast<unsigned>(fault); };
   faulty.steps[1].telemetry.faults_persisting = bit(hal::Fault::kFrameFrozen);
   faulty.steps[2].telemetry.faults_persisting = bit(hal::Fault::kFrameFrozen) | bit(hal::Fault::kOutage);
   faulty.steps[3].telemetry.faults_persisting = bit(hal::Fault::kFrameFrozen);
-  EXPECT_EQ(text_of(standing_faults(run())), "none");
+  EXPECT_EQ(text_of(standing_faults(two_sequences())), "none");
   EXPECT_EQ(text_of(standing_faults(faulty)),
             "OUTAGE in 1 step of 1 sequence, FRAME_FROZEN in 3 steps of 2 sequences");
   EXPECT_EQ(run_json(setup(), faulty)["faults"].dump(),
@@ -172,13 +172,13 @@ TEST(StandingFaults, HaveTheNamesOfTheInterfaceDocument) {
 
 // Verifies TS-MEM-020.
 TEST(RunFaults, NameHeapAllocations) {
-  SilRunResult allocating = run();
+  SilRunResult allocating = two_sequences();
   allocating.flight_heap_allocations = 3;
   EXPECT_EQ(run_faults(allocating).size(), 1U);
 }
 
 TEST(FrameResults, LeaveOutStepsWithoutAnAnswer) {
-  SilRunResult some = run();
+  SilRunResult some = two_sequences();
   some.steps[2].answered = false;
   EXPECT_EQ(frame_results(some, kSwath_m).size(), 3U);
 }
@@ -199,7 +199,7 @@ TEST(FrameResults, HoldThePosesOfTheReports) {
 }
 
 TEST(RunJson, NamesWhatWasAskedOfTheRun) {
-  SilRunResult asked = run();
+  SilRunResult asked = two_sequences();
   asked.requests = {{4, "freeze for 2 steps"}, {6, "telecommand NOOP"}};
   const nlohmann::ordered_json json = run_json(SilRunSetup{}, asked);
   EXPECT_EQ(json["requests"][1]["step"], 6);
@@ -214,12 +214,12 @@ TEST(RunJson, HoldsThePoses) {
   EXPECT_TRUE(json["pose_first"].is_null());
   EXPECT_NEAR(json["pose"]["across_m"].get<double>(), 0.005, 1e-6);
   EXPECT_EQ(json["pose"]["verified"], 1.0);
-  EXPECT_TRUE(run_json(setup(), run())["pose"].is_null());
+  EXPECT_TRUE(run_json(setup(), two_sequences())["pose"].is_null());
 }
 
 TEST(RunPage, ShowsThePosesWhereThereAreAny) {
-  EXPECT_TRUE(run_poses_table(run_report(setup(), run())).rows.empty());
-  EXPECT_EQ(run_page(run_report(setup(), run())).find("registered pose"), std::string::npos);
+  EXPECT_TRUE(run_poses_table(run_report(setup(), two_sequences())).rows.empty());
+  EXPECT_EQ(run_page(run_report(setup(), two_sequences())).find("registered pose"), std::string::npos);
   const RunReport report = run_report(setup(), run_with_poses());
   const DataTable table = run_poses_table(report);
   ASSERT_EQ(table.rows.size(), 1U);
@@ -231,7 +231,7 @@ TEST(RunPage, ShowsThePosesWhereThereAreAny) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
   }
   const std::vector<std::string> svgs = svgs_of(page);
-  EXPECT_EQ(svgs.size(), svgs_of(run_page(run_report(setup(), run()))).size() + 3);
+  EXPECT_EQ(svgs.size(), svgs_of(run_page(run_report(setup(), two_sequences()))).size() + 3);
   for (const std::string& svg : svgs) {
     EXPECT_EQ(xml_fault(svg), "");
     EXPECT_EQ(svg.find("nan"), std::string::npos);
@@ -239,7 +239,7 @@ TEST(RunPage, ShowsThePosesWhereThereAreAny) {
 }
 
 TEST(RunReport, CountsWarningsAndErrorsByEvent) {
-  SilRunResult warned = run();
+  SilRunResult warned = two_sequences();
   const hal::Event from_future{0, hal::EventId::kFrameFromFuture, hal::Severity::kWarning, {}};
   const hal::Event accepted{0, hal::EventId::kCommandAccepted, hal::Severity::kInformation, {}};
   warned.steps[1].events = {from_future, accepted};
@@ -253,7 +253,7 @@ TEST(RunReport, CountsWarningsAndErrorsByEvent) {
 
 // Verifies TS-SIL-390.
 TEST(RunReport, IsModuloTheSymmetryOfTheTargetAndWithoutThePapersFigures) {
-  SilRunResult quarter = run();
+  SilRunResult quarter = two_sequences();
   for (StepResult& step : quarter.steps) step.attitude.q_lrf_trf = {759250125, 0, 0, 759250125};
   SilRunSetup symmetric = setup();
   EXPECT_TRUE(run_report(symmetric, quarter).paper.rcnn.has_value());
@@ -271,10 +271,11 @@ TEST(RunReport, IsModuloTheSymmetryOfTheTargetAndWithoutThePapersFigures) {
 
 // Verifies TS-SIL-380.
 TEST(RunReport, SaysFirstThatTheAttitudesAreMostlyWrong) {
-  SilRunResult quarter = run();
+  SilRunResult quarter = two_sequences();
   for (StepResult& step : quarter.steps) step.attitude.q_lrf_trf = {759250125, 0, 0, 759250125};
   SilRunSetup wrong = setup();
-  EXPECT_EQ(run_page(run_report(wrong, run())).find("does not know the attitude"), std::string::npos);
+  EXPECT_EQ(run_page(run_report(wrong, two_sequences())).find("does not know the attitude"),
+            std::string::npos);
   EXPECT_NE(run_page(run_report(wrong, quarter))
                 .find("<p class=lead>The network does not know the attitude of NEAR Shoemaker in these "
                       "frames. 100 % of the attitudes are more than 20° off"),
@@ -284,7 +285,7 @@ TEST(RunReport, SaysFirstThatTheAttitudesAreMostlyWrong) {
 }
 
 TEST(RunReport, CarriesPicturesAndSettings) {
-  SilRunResult recorded = run();
+  SilRunResult recorded = two_sequences();
   gnc::RangeImage frame;
   frame.rays = 128;
   frame.fov_urad = 140'000;

@@ -32,9 +32,9 @@ TriangleMesh two_plates() {
   return mesh;
 }
 
-const double kRadius_m = two_plates().radius_m();
+const double kTargetRadius_m = two_plates().radius_m();
 const std::vector<std::uint8_t>& section_of_plates() {
-  static const std::vector<std::uint8_t> section = surface_section(two_plates(), kRadius_m);
+  static const std::vector<std::uint8_t> section = surface_section(two_plates(), kTargetRadius_m);
   return section;
 }
 
@@ -53,7 +53,7 @@ TEST(SurfaceSamples, LieOnTheSurfaceAndFaceOutwards) {
   EXPECT_GT(surface.points(), 1900U);
   int up = 0;
   for (int i = 0; i < static_cast<int>(surface.points()); ++i) {
-    const Vector3d at = position_m(surface, i, kRadius_m);
+    const Vector3d at = position_m(surface, i, kTargetRadius_m);
     ASSERT_NEAR(std::abs(at.z()), 0.02, 1e-4) << i;
     ASSERT_LE(at.head<2>().cwiseAbs().maxCoeff(), 1.0 + 1e-4) << i;
     up += at.z() > 0.0 ? 1 : 0;
@@ -73,14 +73,15 @@ TEST(SurfaceSamples, AreSpreadEvenly) {
     for (double y = -0.95; y < 1.0; y += 0.19) {
       double nearest_m = std::numeric_limits<double>::infinity();
       for (int i = 0; i < static_cast<int>(surface.points()); ++i)
-        nearest_m = std::min(nearest_m, (position_m(surface, i, kRadius_m) - Vector3d(x, y, 0.02)).norm());
+        nearest_m =
+            std::min(nearest_m, (position_m(surface, i, kTargetRadius_m) - Vector3d(x, y, 0.02)).norm());
       EXPECT_LT(nearest_m, 1.1 * spacing_m) << x << ' ' << y;
     }
   }
 }
 
 TEST(SurfaceSamples, AreTheSameEveryTime) {
-  EXPECT_EQ(surface_section(two_plates(), kRadius_m), section_of_plates());
+  EXPECT_EQ(surface_section(two_plates(), kTargetRadius_m), section_of_plates());
 }
 
 TEST(SurfaceSamples, NeedASurface) {
@@ -91,7 +92,7 @@ TEST(SurfaceSamples, AreUnlikeThoseOfATurnedMeshOnly) {
   const SurfaceModel plates(section_of_plates().data());
   TriangleMesh standing = two_plates();
   for (Eigen::Vector3f& v : standing.vertices_trf_m) v = {v.x(), -v.z(), v.y()};
-  const std::vector<std::uint8_t> section = surface_section(standing, kRadius_m);
+  const std::vector<std::uint8_t> section = surface_section(standing, kTargetRadius_m);
   const SurfaceModel turned(section.data());
   EXPECT_EQ(unlike_share(plates, plates), 0.0);
   EXPECT_GT(unlike_share(plates, turned), 0.7);

@@ -65,7 +65,7 @@ TEST(HypothesisLoss, DecreasesIfTheLogitsPreferTheBestHypothesis) {
   EXPECT_LT(hypothesis_loss(output, errors, 0.02).item<double>(), before);
 }
 
-constexpr double kPi = 3.14159265358979;
+constexpr double kHalfTurn_rad = 3.14159265358979;
 
 torch::Tensor turned_by(double angle_rad) {
   return matrix(Eigen::Matrix3f(
@@ -98,7 +98,7 @@ TEST(TrackingLoss, EqualsItsClosedForm) {
   const double choice = -0.5 * (std::log((std::exp(1.0) + 1.0) / (std::exp(1.0) + 8.0)) +
                                 std::log(2.0 / (std::exp(2.0) + 8.0)));
   const double p = 1.0 / (1.0 + std::exp(1.5));
-  const double error = 0.8 / kPi;
+  const double error = 0.8 / kHalfTurn_rad;
   const double expected_error =
       0.5 * (std::log(2.0) - error * std::log(p) - (1.0 - error) * std::log(1.0 - p));
   EXPECT_NEAR(tracking_loss(t.sequences, t.truth).item<double>(), 0.2 + 0.3 * choice + 0.1 * expected_error,
@@ -118,14 +118,14 @@ TEST(TrackingLoss, TreatsAllGoodClustersAlikeAndPrefersThemToTheOthers) {
 
 TEST(TrackingLoss, IsMinimalIfTheErrorLogitStatesTheError) {
   Tracked t;
-  t.sequences.error_logits.fill_(std::log(0.8 / (kPi - 0.8)));
+  t.sequences.error_logits.fill_(std::log(0.8 / (kHalfTurn_rad - 0.8)));
   t.sequences.error_logits.requires_grad_();
   tracking_loss(t.sequences, t.truth).backward();
   EXPECT_LT(t.sequences.error_logits.grad().abs().max().item<double>(), 1e-5);
 }
 
 TEST(TrackingLoss, HasFiniteGradientsAtNoErrorAndAtHalfATurn) {
-  for (const double angle_rad : {0.0, kPi}) {
+  for (const double angle_rad : {0.0, kHalfTurn_rad}) {
     Tracked t;
     t.sequences.cluster_means = turned_by(angle_rad).expand({1, 2, shape::kCandidates, 3, 3}).clone();
     t.sequences.cluster_means.requires_grad_();

@@ -14,7 +14,7 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr int kMany = 2000;
+constexpr int kDraws = 2000;
 
 Eigen::Matrix3d near_inertia() {  // paper, spacecraft table
   Eigen::Matrix3d inertia;
@@ -136,7 +136,7 @@ TEST(Stress, IsTumblingWithTheInertiaAboutZHalved) {
 TEST(Occluded, HidesSharesUniformOn5To30PercentBehindEveryShape) {
   std::vector<double> shares;
   std::array<int, 4> shapes{};
-  for (int index = 0; index < kMany; ++index) {
+  for (int index = 0; index < kDraws; ++index) {
     const Occluder occluder = make_sequence(settings_of(Condition::kOccluded), 6, index).frames[0].occluder;
     shares.push_back((occluder.hidden_share - 0.05) / 0.25);
     ++shapes[static_cast<std::size_t>(occluder.shape)];
@@ -147,7 +147,7 @@ TEST(Occluded, HidesSharesUniformOn5To30PercentBehindEveryShape) {
   EXPECT_LT(unlikeliness(shares), kUnlikely);
   EXPECT_EQ(shapes[static_cast<std::size_t>(OccluderShape::kNone)], 0);
   for (const OccluderShape shape : {OccluderShape::kArm, OccluderShape::kMast, OccluderShape::kPanelEdge}) {
-    EXPECT_NEAR(shapes[static_cast<std::size_t>(shape)] / double{kMany}, 1.0 / 3.0, 0.04);
+    EXPECT_NEAR(shapes[static_cast<std::size_t>(shape)] / double{kDraws}, 1.0 / 3.0, 0.04);
   }
 }
 
@@ -173,7 +173,7 @@ TEST(Occluded, TheOccluderMovesSteadilyAcrossTheFramesAndKeepsItsShapeAndShare) 
 
 TEST(Offset, IsAtMostAFifthOfTheSwathInAnyDirectionAndStays) {
   std::vector<double> lengths, directions;
-  for (int index = 0; index < kMany; ++index) {
+  for (int index = 0; index < kDraws; ++index) {
     ScenarioSettings settings = settings_of(Condition::kOffset);
     settings.frames = 2;
     const Sequence sequence = make_sequence(settings, 7, index);

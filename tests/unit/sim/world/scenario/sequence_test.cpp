@@ -13,7 +13,7 @@
 namespace tumblesight::sim {
 namespace {
 
-constexpr int kMany = 4000;
+constexpr int kSequences = 4000;
 
 TEST(Sequence, AttitudesAreUniformOnSo3) {
   // For a uniform rotation the angle has density (1 - cos a) / pi: its mean is pi/2 + 2/pi, and the image of
@@ -21,7 +21,7 @@ TEST(Sequence, AttitudesAreUniformOnSo3) {
   double angle = 0.0;
   Eigen::Vector3d axis_sum = Eigen::Vector3d::Zero();
   Eigen::Vector3d axis_squared = Eigen::Vector3d::Zero();
-  for (int i = 0; i < kMany; ++i) {
+  for (int i = 0; i < kSequences; ++i) {
     const Eigen::Quaterniond q = make_sequence({Condition::kNominal, 1}, 7, i).frames[0].q_lrf_trf;
     ASSERT_NEAR(q.norm(), 1.0, 1e-12);
     angle += 2.0 * std::acos(std::min(1.0, std::abs(q.w())));
@@ -29,14 +29,14 @@ TEST(Sequence, AttitudesAreUniformOnSo3) {
     axis_sum += z;
     axis_squared += z.cwiseAbs2();
   }
-  EXPECT_NEAR(angle / kMany, M_PI / 2 + 2 / M_PI, 0.04);
-  EXPECT_LT((axis_sum / kMany).norm(), 0.05);
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(axis_squared[i] / kMany, 1.0 / 3.0, 0.02);
+  EXPECT_NEAR(angle / kSequences, M_PI / 2 + 2 / M_PI, 0.04);
+  EXPECT_LT((axis_sum / kSequences).norm(), 0.05);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(axis_squared[i] / kSequences, 1.0 / 3.0, 0.02);
 }
 
 TEST(Sequence, RangesAndRatesStayWithinThePapersLimitsAndFillThem) {
   double least_m = 1e9, most_m = 0.0, fastest = 0.0;
-  for (int i = 0; i < kMany; ++i) {
+  for (int i = 0; i < kSequences; ++i) {
     const FrameTruth truth = make_sequence({Condition::kNominal, 1}, 8, i).frames[0];
     least_m = std::min(least_m, truth.range_m);
     most_m = std::max(most_m, truth.range_m);
@@ -87,7 +87,7 @@ TEST(Sequence, IsTheSameWithEveryCompiler) {
 // Norms relative to the largest possible one.
 std::vector<double> relative_norms(RateDistribution distribution) {
   std::vector<double> norms;
-  for (int i = 0; i < kMany; ++i) {
+  for (int i = 0; i < kSequences; ++i) {
     ScenarioSettings settings;
     settings.frames = 1;
     settings.rate_distribution = distribution;
