@@ -188,25 +188,37 @@ gone_from_cache() { # folder
     while read -r name line; do [ -e "$line" ] || echo "$name"; done
 }
 
+# The presets release and train share a folder, so that training adds to what is built. Once configured, it stays.
+folder_of_preset() { # preset
+  case $1 in train) echo "$root/build/release" ;; *) echo "$root/build/$1" ;; esac
+}
+
+is_configured() { # preset, folder
+  [ "$(cat "$2/.configured" 2>/dev/null)" = "$(basis_of_configuration "$2")" ] || return 1
+  [ "$1" != train ] || [ "$(cached "$2" TUMBLESIGHT_TRAINING)" = ON ]
+}
+
 # Configures a preset of CMakePresets.json, unless that is done and nothing that it rests on has changed since: a package that
 # has come adds what could not be built without it.
 configure_preset() { # preset
-  local folder=$root/build/$1 stamp=$root/build/$1/.configured options=() name
+  local folder options=() name
+  folder=$(folder_of_preset "$1")
   if ! is_usable_cache "$folder"; then
     [ ! -f "$folder/CMakeCache.txt" ] || options=(--fresh)
   else
-    [ "$(cat "$stamp" 2>/dev/null)" != "$(basis_of_configuration "$folder")" ] || return 0
+    ! is_configured "$1" "$folder" || return 0
     for name in $(gone_from_cache "$folder"); do options+=(-U "$name"); done
   fi
-  rm -f "$stamp"
+  rm -f "$folder/.configured"
   quietly "configuring" "$root/build/log/configure_$1.log" cmake -S "$root" --preset "$1" "${options[@]}" ||
     fail "cmake failed (see above; the whole log: build/log/configure_$1.log)"
-  basis_of_configuration "$folder" >"$stamp"
+  basis_of_configuration "$folder" >"$folder/.configured"
 }
 
 # Configures and builds a preset, or some targets of it. Prints nothing if all is up to date.
 build_preset() { # preset, target...
-  local folder="$root/build/$1"
+  local folder
+  folder=$(folder_of_preset "$1")
   configure_preset "$1"
   shift
   ninja -C "$folder" -n "$@" 2>/dev/null | grep -q 'no work to do' && return 0
