@@ -98,6 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"tests/fuzz/run nothere", "there is no target 'nothere'; the targets are: "},
         Refused{"tests/fuzz/run --seconds x", "--seconds needs a number of at least 1"},
         Refused{"tests/analysis/coverage/run --least", "--least needs a percentage"},
+        Refused{"tests/analysis/coverage/run --least-conditions 9x", "--least-conditions needs a percentage"},
         Refused{"tests/analysis/sanitize/run speed", "there is no 'speed'"},
         Refused{"tests/analysis/static/run --tool lint", "lint"},
         Refused{"tests/analysis/static/run nothere", "there is no 'nothere'"},
