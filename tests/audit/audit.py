@@ -8,10 +8,10 @@ import subprocess
 import sys
 
 import image
-import instruction_count
 import processors
 import report
 import stack
+import step_counts
 from network_layers import macs
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -50,8 +50,18 @@ def resets(console):
     return [number for number, run in enumerate(runs) if run == 1 and number > 0]
 
 
+def largest(names, steps):
+    """{stage: the most of all steps}; what sends telemetry counts for the application."""
+    found = {name: max(step[i] for step in steps) for i, name in enumerate(names)}
+    found["application"] += found.pop("telemetry")
+    return found
+
+
 def measure(processor, numerics, program, plugin, folder):
-    names, steps, console = instruction_count.count(processor, program, plugin, folder)
+    models = [limit.model for limit in processor.limits[:None if numerics == "fixed" else 1]]
+    by_model = {}  # {title: [cycles per stage] of every step}
+    for model in models:
+        names, steps, by_model[model.title], console = step_counts.count(processor, model, program, plugin, folder)
     digest = next((line.split()[-1] for line in console if line.startswith("digest ")), "none")
     heading = next(line for line in console if line.startswith("tumblesight, ")).split(", ")
     # The application's work depends on what happens in the step, and registration draws what the frame shows. All other counts must
@@ -59,14 +69,18 @@ def measure(processor, numerics, program, plugin, folder):
     alike = [step for number, step in enumerate(steps) if number not in resets(console)]
     unequal = {name: sorted({step[i] for step in alike}) for i, name in enumerate(names)
                if name not in ("application", "telemetry", "registration") and len({step[i] for step in alike}) > 1}
-    stages = {name: max(step[i] for step in steps) for i, name in enumerate(names)}
-    stages["application"] += stages.pop("telemetry")
-    longest = (instruction_count.count_longest_steps(processor, program.with_name(LONGEST_STEPS), plugin, folder)
-               if numerics == "fixed" else {})
+    stages = largest(names, steps)
+    stage_cycles = {title: largest(names, cycles) for title, cycles in by_model.items()}
+    longest, longest_cycles = {}, {}
+    for model in models if numerics == "fixed" else ():
+        longest, longest_cycles[model.title] = step_counts.count_longest_steps(
+            processor, model, program.with_name(LONGEST_STEPS), plugin, folder)
     sizes = image.sizes(processor, program)
     stack_bytes, path = stack.worst_case(program.parents[1], numerics)
     return {"digest": digest, "digest_is_golden": digest == golden()[numerics], "set": heading[3], "frames": heading[4],
             "target": heading[1], "steps": len(steps), "stages": stages, "instructions": sum(stages.values()), "longest_steps": longest,
+            "stage_cycles": stage_cycles, "cycles": {title: sum(of.values()) for title, of in stage_cycles.items()},
+            "longest_cycles": longest_cycles,
             # Float32 arithmetic may branch on the data on some processors.
             "equal_counts": not unequal or numerics == "float32", "unequal": unequal,
             "text": sizes["text"], "read_only": sizes["read_only"], "ram": sizes["data"] + sizes["bss"] + stack_bytes,
@@ -77,7 +91,7 @@ def measure(processor, numerics, program, plugin, folder):
 
 def print_result(processor, numerics, r):
     print(f"  {processor.name:<11} {numerics:<8} {r['digest']}  {r['instructions'] / 1e6:8.2f} M instructions "
-          f"{r['instructions'] / macs():6.3f} /MAC   text {r['text'] / 1024:5.1f}  RAM {r['ram'] / 1024:6.1f}  stack "
+          f"{r['instructions'] / macs():6.3f} /MAC  {' '.join(f'{cycles / 1e6:7.2f}' for cycles in r['cycles'].values())} M cycles   text {r['text'] / 1024:5.1f}  RAM {r['ram'] / 1024:6.1f}  stack "
           f"{r['stack'] / 1024:4.1f} KiB", flush=True)
 
 
@@ -103,7 +117,7 @@ def main():
     wanted = [processors.by_name(name) for name in arguments.processor] if arguments.processor else processors.ALL
     folder = ROOT / "build/audit"
     folder.mkdir(parents=True, exist_ok=True)
-    plugin = instruction_count.build_plugin(folder)
+    plugin = step_counts.build_plugin(folder)
 
     for processor in wanted:
         if sys.stdout.isatty():

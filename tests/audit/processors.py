@@ -6,9 +6,9 @@ import json
 import pathlib
 import subprocess
 
+from cycles import aarch64, arm, powerpc, riscv, sparc
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Mean of every processor: an assumption, neither measured nor from a data sheet.
-CYCLES_PER_INSTRUCTION = 1.5
 
 
 @functools.lru_cache(maxsize=None)
@@ -29,12 +29,20 @@ def _toolchain(name):
 
 
 @dataclasses.dataclass(frozen=True)
+class Limit:
+    """Of the time by a model of the processor, as shares of the period."""
+    model: object  # cycles.pipeline.Model
+    step: float  # a whole step of the recorded frames in fixed point
+    longest_step: float
+
+
+@dataclasses.dataclass(frozen=True)
 class Processor:
     name: str  # of the preset and the toolchain file
     clock_mhz: int
     part: str  # the part that has this clock
     instructions_e6: float  # limit, of a whole step in fixed point [millions]
-    share_of_period: float  # limit, same
+    limits: tuple
 
     @property
     def title(self):
@@ -65,15 +73,14 @@ class Processor:
 
 # Verifies TS-TIM-010, TS-TIM-020, TS-TIM-030, TS-TIM-040.
 ALL = (
-    Processor("cortex-a53", 1200, "Zynq UltraScale+; dual issue, in order", 45, 0.10),
-    Processor("cortex-a9", 667, "Zynq-7000; dual issue, NEON in order", 65, 0.10),
-    Processor("rv64gc", 600, "PolarFire SoC, U54; single issue, in order", 135, 0.70),
-    Processor("ppc750", 133, "RAD750; dual issue, out of order", 135, 0.70),
-    Processor("cortex-m7", 100, "SAMRH71; dual issue, in order", 80, 0.45),
-    Processor("cortex-r5f", 500, "Zynq UltraScale+; dual issue, in order", 80, 0.25),
-    Processor("rv64", 600, "PolarFire SoC, U54; single issue, in order", 135, 0.70),
-    Processor("leon3", 100, "GR712RC class; single issue, in order, with the pipelined 32×32-bit multiplier (with the 16×16-bit one "
-              "a product takes four cycles, and a step about the whole period)", 135, 0.70),
+    Processor("cortex-a53", 1200, "Zynq UltraScale+", 45, (Limit(aarch64.A53, 0.10, 0.20),)),
+    Processor("cortex-a9", 667, "Zynq-7000", 65, (Limit(arm.A9, 0.10, 0.20),)),
+    Processor("rv64gc", 600, "PolarFire SoC", 135, (Limit(riscv.U54, 0.10, 0.30),)),
+    Processor("ppc750", 133, "RAD750", 135, (Limit(powerpc.PPC750, 0.40, 0.75),)),
+    Processor("cortex-m7", 100, "SAMRH71", 80, (Limit(arm.M7_TIGHTLY_COUPLED, 0.25, 0.60), Limit(arm.M7_CACHED, 0.25, 0.60))),
+    Processor("cortex-r5f", 500, "Zynq UltraScale+", 80, (Limit(arm.R5F, 0.10, 0.20),)),
+    Processor("rv64", 600, "PolarFire SoC", 135, (Limit(riscv.U54, 0.10, 0.30),)),
+    Processor("leon3", 100, "GR712RC class", 135, (Limit(sparc.SLOW, 0.60, 0.95), Limit(sparc.FAST, 0.45, 0.75))),
 )
 
 

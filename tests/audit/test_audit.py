@@ -6,20 +6,22 @@ import tempfile
 import unittest
 
 import audit
-import instruction_count
 import network_layers
 import processors
 import report
 import stack
+import step_counts
 
 MACS = 1000
 BUDGETS = {"ram": 100, "stack": 10, "text": 100, "read_only": 100}
 PROCESSOR = processors.by_name("cortex-m7")
+TITLES = [limit.model.title for limit in PROCESSOR.limits]
 
 
 def result(**changes):
     good = {"digest": "0", "digest_is_golden": True, "equal_counts": True, "unequal": {}, "forbidden": {}, "floating_point": [],
-            "instructions": 1000, "longest_steps": {}, "text": 50, "read_only": 50, "ram": 50, "stack": 5, "cfs_app": {}}
+            "instructions": 1000, "cycles": {title: 1200 for title in TITLES}, "longest_steps": {},
+            "longest_cycles": {title: {} for title in TITLES}, "text": 50, "read_only": 50, "ram": 50, "stack": 5, "cfs_app": {}}
     return [(PROCESSOR, "fixed", {**good, **changes})]
 
 
@@ -41,11 +43,21 @@ class Failures(unittest.TestCase):
                 self.assertEqual(len(wrong), 1)
                 self.assertIn(words, wrong[0])
 
-    # Three quarters of the period: 135 M instructions at 100 MHz.
+    def test_every_step_is_limited_by_each_model(self):
+        for limit in PROCESSOR.limits:
+            most = round(limit.step * report.PERIOD_S * PROCESSOR.clock_mhz * 1e6)
+            self.assertEqual(self.of(cycles={limit.model.title: most}), [])
+            self.assertIn(f"{limit.model.title}: a step", self.of(cycles={limit.model.title: most + most // 100})[0])
+
     def test_every_longest_step_is_limited(self):
-        self.assertEqual(self.of(longest_steps={"frame": 135_000_000, "boot": 136_000_000}), [])
+        limit = PROCESSOR.limits[0]
+        most = round(limit.longest_step * report.PERIOD_S * PROCESSOR.clock_mhz * 1e6)
+        more = most + most // 100
+        self.assertEqual(self.of(longest_cycles={limit.model.title: {"frame": most, "boot": more}}), [])
         for name in ("frame, commands", "table rebuilt", "model activated"):
-            self.assertIn(f"'{name}': 75.6 %", self.of(longest_steps={"boot": 1, name: 136_000_000})[0])
+            self.assertIn(f"'{name}'", self.of(longest_cycles={limit.model.title: {"boot": 1, name: more}})[0])
+
+    def test_growth_of_a_longest_step_is_reported(self):
         before = {"cortex-m7": {"fixed": {"longest_steps": {"table rebuilt": 1000}, "instructions": 1000, "text": 50, "read_only": 50,
                                           "ram": 50, "stack": 5}}}
         self.assertIn("'table rebuilt' has grown", self.of(before, longest_steps={"table rebuilt": 1021})[0])
@@ -103,11 +115,11 @@ class WorstCaseStack(unittest.TestCase):
 
 class Stages(unittest.TestCase):
     def test_first_two_begin_and_end_a_step(self):
-        self.assertEqual([name for name, _ in instruction_count.stages()[:2]], ["application", "(end)"])
+        self.assertEqual([name for name, _ in step_counts.stages()[:2]], ["application", "(end)"])
 
     def test_every_layer_of_the_cnn_is_one(self):
         cnn = [layer for layer in network_layers.layers() if layer.part == "cnn"]
-        names = [name for name, _ in instruction_count.stages()]
+        names = [name for name, _ in step_counts.stages()]
         first = names.index("space to depth") + 1
         self.assertEqual(names[first:first + len(cnn)], [layer.name for layer in cnn[:-1]] + ["single-frame head"])
 
@@ -137,7 +149,8 @@ class Processors(unittest.TestCase):
 
 
 class Documents(unittest.TestCase):
-    FIGURES = {"set": "portable", "stages": {"application": 400, "conv1": 600}}
+    FIGURES = {"set": "portable", "stages": {"application": 400, "conv1": 600}, "longest_steps": {"frame": 1500},
+               "longest_cycles": {title: {"frame": 2000} for title in TITLES}}
 
     def test_table_of_the_readme_is_replaced_between_its_marks(self):
         text = f"before\n{report.BEGIN}\nold\n{report.END}\nafter\n"

@@ -1,8 +1,9 @@
-"""Counts the instructions of every step of flight_replay per stage, with a QEMU plugin."""
+"""Counts the instructions and the cycles of every step of flight_replay per stage, with a QEMU plugin."""
 import pathlib
 import re
 import subprocess
 
+from cycles import pipeline
 from network_layers import function, layers
 
 # The stages in the order of execution, each with the function that begins it. The first one begins a step, the second one ends
@@ -37,8 +38,8 @@ def stages(with_registration=True):
 
 
 def build_plugin(folder):
-    plugin = folder / "count_instructions.so"
-    source = pathlib.Path(__file__).with_suffix("").parent / "count_instructions.c"
+    plugin = folder / "count_cycles.so"
+    source = pathlib.Path(__file__).with_name("count_cycles.c")
     subprocess.run(["gcc", "-O2", "-shared", "-fPIC", str(source), "-o", str(plugin)], check=True)
     return plugin
 
@@ -57,28 +58,32 @@ def addresses(processor, program, wanted):
     return found
 
 
-def run_and_count(processor, program, plugin, folder, wanted):
-    """([instructions per stage] of every step, lines of the console)"""
-    table, out = folder / f"{program.name}.stages", folder / f"{program.name}.counts"
+def run_and_count(processor, model, program, plugin, folder, wanted):
+    """([instructions per stage] of every step, [cycles per stage] of every step, lines of the console)"""
+    inputs = {name: folder / f"{program.name}.{name}" for name in ("stages", "cycles", "model", "out")}
     lines = (f"{address:x} {name}\n" for address, (name, _) in zip(addresses(processor, program, wanted), wanted))
-    table.write_text("".join(lines))
-    out.unlink(missing_ok=True)
+    inputs["stages"].write_text("".join(lines))
+    instructions = pipeline.disassemble(processor.tool("objdump"), program)
+    inputs["cycles"].write_text(pipeline.as_table(instructions, pipeline.static_cycles(instructions, model)))
+    inputs["model"].write_text(pipeline.as_settings(model))
+    inputs["out"].unlink(missing_ok=True)
     command = list(processor.emulator)
     at = -1 if command[-1] == "-kernel" else len(command)
-    command[at:at] = ["-plugin", f"{plugin},stages={table},out={out}"]
+    command[at:at] = ["-plugin", ",".join([str(plugin), *(f"{name}={path}" for name, path in inputs.items())])]
     run = subprocess.run(command + [str(program)], capture_output=True, text=True, timeout=TIME_LIMIT_S, stdin=subprocess.DEVNULL)
     console = (run.stdout + run.stderr).splitlines()
     if run.returncode != 0:
         raise SystemExit(f"audit: {program} on {processor.name} ended with status {run.returncode}:\n" + "\n".join(console[-5:]))
-    return [tuple(map(int, line.split())) for line in out.read_text().splitlines()], console
+    numbers = [tuple(map(int, line.split())) for line in inputs["out"].read_text().splitlines()]
+    half = len(wanted) - 1
+    return [row[:half] for row in numbers], [row[half:] for row in numbers], console
 
 
 # Verifies TS-NUM-070.
-def count(processor, program, plugin, folder):
-    """(names of the stages, [instructions per stage] of every step, lines of the console)"""
+def count(processor, model, program, plugin, folder):
+    """(names of the stages, [instructions per stage] of every step, [cycles per stage] of every step, lines of the console)"""
     wanted = stages(with_registration="float32" not in program.name)
-    steps, console = run_and_count(processor, program, plugin, folder, wanted)
-    return [name for name, _ in wanted if name != "(end)"], steps, console
+    return ([name for name, _ in wanted if name != "(end)"], *run_and_count(processor, model, program, plugin, folder, wanted))
 
 
 # A whole step of flight_worst_step.
@@ -86,14 +91,11 @@ WHOLE_STEP = (("step", r"^tumblesight_step_begins"), ("(end)", r"^tumblesight_st
 
 
 # Verifies TS-TIM-100.
-def count_longest_steps(processor, program, plugin, folder):
-    """{name of a step: instructions, the most of all steps with this name}, without the quiet ones"""
-    steps, console = run_and_count(processor, program, plugin, folder, WHOLE_STEP)
+def count_longest_steps(processor, model, program, plugin, folder):
+    """({name of a step: instructions}, {name of a step: cycles}), the most of all steps with this name, without the quiet ones"""
+    instructions, cycles, console = run_and_count(processor, model, program, plugin, folder, WHOLE_STEP)
     names = [line.split(" ", 1)[1] for line in console if line.startswith("step ")]
-    if len(names) != len(steps) or "all steps done" not in console:
-        raise SystemExit(f"audit: {program} on {processor.name}: {len(names)} names for {len(steps)} steps:\n" + "\n".join(console[-5:]))
-    worst = {}
-    for name, (instructions,) in zip(names, steps):
-        if name != "quiet":
-            worst[name] = max(worst.get(name, 0), instructions)
-    return worst
+    if len(names) != len(cycles) or "all steps done" not in console:
+        raise SystemExit(f"audit: {program} on {processor.name}: {len(names)} names for {len(cycles)} steps:\n" + "\n".join(console[-5:]))
+    return tuple({name: max(steps[i][0] for i in range(len(names)) if names[i] == name) for name in dict.fromkeys(names) if name != "quiet"}
+                 for steps in (instructions, cycles))
