@@ -208,6 +208,10 @@ configure_preset() { # preset
   else
     ! is_configured "$1" "$folder" || return 0
     for name in $(gone_from_cache "$folder"); do options+=(-U "$name"); done
+    # Training stays only as long as LibTorch does.
+    if [ "$1" = release ] && [ "$(cached "$folder" TUMBLESIGHT_TRAINING)" = ON ] && [ ! -e "$(cached "$folder" Torch_DIR)" ]; then
+      options+=(-D TUMBLESIGHT_TRAINING=OFF)
+    fi
   fi
   rm -f "$folder/.configured"
   quietly "configuring" "$root/build/log/configure_$1.log" cmake -S "$root" --preset "$1" "${options[@]}" ||

@@ -1,5 +1,6 @@
 # use_unity_build(<folder>): the programs and libraries of a folder and of those below it compile in groups of sources, so that the
-# headers of a group are read once. Not those that have UNITY_BUILD OFF: their sources use one name for different things.
+# headers of a group are read once. Targets with UNITY_BUILD OFF are left out: their sources use the same name for different
+# things.
 function(use_unity_build folder)
   get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)

@@ -6,8 +6,9 @@
    lasts until the next one begins. The first stage begins a step, the second ends it.
 
    cycles: lines "ADDRESS CYCLES BRANCH MORE", in order of the addresses: what each instruction keeps the
-   pipeline busy; '-', 'c' (conditional branch), 'j' (jump, call) or 'r' (through a register); more cycles of
-   a branch that is not taken. Of an instruction without a line: one cycle.
+   pipeline busy; '-', 'c' (conditional branch), 'a' (the same with a delay slot that is annulled if it is not
+   taken), 'j' (jump, call) or 'r' (through a register); more cycles of a branch that is not taken. Of an
+   instruction without a line: one cycle.
 
    model: lines "NAME VALUE", the rest of the processor; see read_model().
 
@@ -133,11 +134,14 @@ static void access_memory(unsigned processor, qemu_plugin_meminfo_t info, uint64
 
 static void leave(const Block* block, uint64_t to) {
   const Entry* const branch = &block->branch;
-  const int taken = to != block->end;
   if (branch->branch == 'r') executed.cycles += indirect_cycles;
   if (branch->branch == 'j') executed.cycles += taken_cycles;
-  if (branch->branch != 'c') return;
-  if (!taken) executed.cycles += branch->not_taken_cycles;
+  if (branch->branch != 'c' && branch->branch != 'a') return;
+  /* SPARC: QEMU ends the block before a delay slot that may be annulled, and goes on with it if the branch is
+     taken. */
+  const int annuls = branch->branch == 'a';
+  const int taken = (to == block->end) == annuls;
+  if (!taken) executed.cycles += branch->not_taken_cycles + annuls;
   int predicted = 1;
   if (has_predictor) {
     uint8_t* const state = &counter[(branch->at >> 1) % kCounters];

@@ -7,7 +7,14 @@ from cycles.pipeline import Branches, Cache, Model, Timing, read_and_written, sp
 _REGISTER = re.compile(r"\b([wxvqdshb])([0-9]+)\b|\b(sp|lr)\b")
 
 
+_ACCUMULATES = r"[us]?ml[as]l?2?|[us]dot|[us]adalp|[us]r?sra|mov[kt]|bfi|bfxil|bif|bit|bsl|[a-z]*n2"
+
+
 def names(operand):
+    """Of a list like {v0.16b-v3.16b} all registers."""
+    listed = re.match(r"\{v([0-9]+)\.[0-9a-z]+-v([0-9]+)", operand)
+    if listed:
+        return [f"v{number}" for number in range(int(listed[1]), int(listed[2]) + 1)]
     return [other or ("x" if kind in "wx" else "v") + number for kind, number, other in _REGISTER.findall(operand)]
 
 
@@ -24,6 +31,8 @@ def operands(instruction, timing):
         occupies = 2  # of 64 bits each
     if timing.writes == "all":
         occupies = max(1, len(written))
+    if re.fullmatch(_ACCUMULATES, instruction.mnemonic):
+        read = read + written
     return read, written, occupies
 
 

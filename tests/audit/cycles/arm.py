@@ -11,6 +11,11 @@ _WHEN = r"(eq|ne|cs|cc|mi|pl|vs|vc|hi|ls|ge|lt|gt|le)?(\.[nw])?"
 _ALWAYS_WHEN = _WHEN.replace(")?(", ")(", 1)
 
 
+_ACCUMULATES = r"[us]mlal|movt|bf[ic]|vmla|vmls|vaba|vpadal|vqdmla|vsra|vbi[ft]|vbsl"
+# add r0, r1 is add r0, r0, r1.
+_TWO_OPERANDS = r"(add|sub|adc|sbc|and|orr|eor|bic|orn|ls[lr]|asr|ror|mul|rsb)s?" + _WHEN + "$"
+
+
 def names(operand):
     """A register of 128 bits as its two of 64 bits; of a list like {d16-d19} all of them."""
     found = []
@@ -35,15 +40,15 @@ def operands(instruction, timing):
     occupies = timing.occupies
     if timing.writes == "all":
         occupies = max(1, math.ceil(len(written) / 2))
-    if re.match(r"[us]mlal", instruction.mnemonic):
-        read = read + written  # they are added to
+    if re.match(_ACCUMULATES, instruction.mnemonic) or (len(parts) == 2 and re.match(_TWO_OPERANDS, instruction.mnemonic)):
+        read = read + written
     return read, written, occupies
 
 
 def _rules(load, small_load, multiply, multiply_long, multiply_halves, vector):
     """Each a Timing; of a vector instruction without load or store."""
     return (
-        (r"(pop|ldm[a-z.]*) .*\bpc\b.*", Timing(load.occupies, load.latency, pairs=False, unit="load/store", branch="r", writes="all")),
+        (r"(pop|ldm)[a-z.]* .*\bpc\b.*", Timing(load.occupies, load.latency, pairs=False, unit="load/store", branch="r", writes="all")),
         (r"ldm.*|pop" + _WHEN, Timing(load.occupies, load.latency, pairs=False, unit="load/store", writes="all")),
         (r"stm.*|push" + _WHEN, Timing(1, pairs=False, unit="load/store", writes="all")),
         (r"vld[1-4m].*|vpop", Timing(1, load.latency + 1, pairs=False, unit="load/store", writes="all")),
@@ -51,18 +56,18 @@ def _rules(load, small_load, multiply, multiply_long, multiply_halves, vector):
         (r"vldr.*", Timing(1, load.latency + 1, unit="load/store")),
         (r"ldrd.*", Timing(load.occupies, load.latency + 1, unit="load/store", writes="two")),
         (r"ldrs?[bh].*", small_load),
-        (r"ldr .*\bpc, .*", Timing(load.occupies, load.latency, branch="r", writes="none")),
+        (r"ldr[a-z.]* pc, .*", Timing(load.occupies, load.latency, branch="r", writes="none")),
         (r"ldr.*|pld", load),
         (r"str.*", Timing(1, unit="load/store", writes="none")),
         (r"[us]m(ull|lal)s?" + _WHEN, dataclasses.replace(multiply_long, writes="two")),
-        (r"sm(u|la|lal|us|lad|uad|lsd|usd|lald)?([bt][bt]|w[bt]|dx?|ad|sd|ald)" + _WHEN, multiply_halves),
+        (r"sm(ul|la|lal)([bt][bt]|w[bt])" + _WHEN + r"|sm(lad|uad|lsd|usd|lald|lsld)x?" + _WHEN, multiply_halves),
         (r"(mul|mla|mls|smmul|smmla)s?r?" + _WHEN, multiply),
         (r"[us]div" + _WHEN, Timing(1, 12, pairs=False, unit="multiply", busy=12)),
         (r"v.*", vector),
         (r"(b|bl)(\.[nw])?", Timing(branch="j", writes="none")),
         (r"blx [0-9a-f]+", Timing(branch="j", writes="none")),
         (r"(bx|blx|bxj|tb[bh])" + _WHEN, Timing(branch="r", writes="none")),
-        (r"mov pc, .*", Timing(branch="r", writes="none")),
+        (r"(mov|add)[a-z.]* pc, .*", Timing(branch="r", writes="none")),
         (r"b" + _ALWAYS_WHEN + r"|cbn?z|bl" + _ALWAYS_WHEN, Timing(branch="c", writes="none")),
         (r"(cmp|cmn|tst|teq)" + _WHEN + r"|it[te]*|nop.*|bkpt|svc.*|cps.*|d[ms]b|isb|msr|mcr.*|udf.*|w?f[ie]", Timing(writes="none")),
         (r"[a-z0-9]+(\.[nw])?", Timing()),

@@ -15,7 +15,8 @@ class Timing:
     pairs: bool = True  # may start in the same cycle as another one, where the pipeline starts two
     unit: str = ""  # one of a unit starts in a cycle, and the next one when it is free again
     busy: int = 1  # cycles from the start until the unit is free again
-    branch: str = "-"  # 'c' conditional, 'j' jump or call, 'r' return or call through a register
+    branch: str = "-"  # 'c' conditional, 'a' the same with a delay slot that is annulled if it is not taken, 'j' jump or call, 'r' return
+    # or call through a register
     writes: str = "first"  # the operand that is written: first, last, two (the first two), all (of a list), none
 
 
@@ -98,7 +99,7 @@ def read_and_written(operands, writes, names):
     if writes == "all":
         written = [index for index, operand in enumerate(operands) if operand[0] == "{"] or ([0] if operands else [])
     return ([name for index, operand in enumerate(operands) if index not in written for name in names(operand)],
-            [name for index in written for name in names(operands[index])])
+            list(dict.fromkeys(name for index in written for name in names(operands[index]))))
 
 
 def rule_of(rules, instruction):
@@ -127,7 +128,7 @@ def static_cycles(instructions, model):
         earliest = max((ready.get(name, 0) for name in read), default=0)
         if timing.unit:
             earliest = max(earliest, free.get(timing.unit, 0))
-        flags = ready.get("flags", 0) if timing.branch == "c" else 0
+        flags = ready.get("flags", 0) if timing.branch in "ca" else 0
         if not model.predicts_taken:
             earliest, flags = max(earliest, flags), 0
         if may_pair and timing.pairs and started < model.issue_width and earliest <= frontier - 1:

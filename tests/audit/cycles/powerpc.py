@@ -14,6 +14,8 @@ def writes_flags(instruction):
 def operands(instruction, timing):
     read, written = read_and_written(split(instruction.operands), timing.writes, _REGISTER.findall)
     occupies = timing.occupies
+    if instruction.mnemonic.startswith("rlwimi"):
+        read = read + written
     if instruction.mnemonic in ("lmw", "stmw"):
         occupies += 32 - int(instruction.operands.split(",")[0][1:])
     return read, written, occupies
@@ -31,7 +33,8 @@ _RULES = (
     (r"bl?|ba|bcl", Timing(branch="j", writes="none")),
     (r"b[a-z]+[+-]?", Timing(branch="c", writes="none")),
     (r"cmp.*", Timing(writes="none")),
-    (r"m[ft].*|sc|.*sync|cr.*|eieio", Timing(pairs=False)),
+    (r"mt.*", Timing(pairs=False, writes="none")),
+    (r"mf.*|sc|.*sync|cr.*|eieio", Timing(pairs=False)),
     (r"[a-z0-9]+\.?", Timing()),
 )
 PPC750 = Model("PowerPC 750", sys.modules[__name__], _RULES, issue_width=2, flags_latency=1,

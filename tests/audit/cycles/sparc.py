@@ -17,6 +17,8 @@ def operands(instruction, timing):
     if instruction.mnemonic.startswith("clr") and not instruction.operands.startswith("["):
         return [], parts, 1  # of a register, not of memory
     read, written = read_and_written(parts, timing.writes, _REGISTER.findall)
+    if instruction.mnemonic in ("inc", "dec", "neg", "not", "inccc", "deccc"):
+        read = read + written
     if instruction.mnemonic.startswith("ldd") and written and written[0][1] in "goli":
         written = [written[0][:2] + str(int(written[0][2]) + 1)]  # the register with the odd number is ready last
     if instruction.mnemonic.startswith("st") and not parts[0].startswith("["):
@@ -34,9 +36,12 @@ def rules(load, load_latency, double_load, store, double_store, multiply, multip
         (r"[us]mul(cc)?", Timing(multiply, multiply_latency, writes="last")),
         (r"[us]div(cc)?", Timing(35, 35, writes="last")),
         (r"jmpl?|rett?|retl", Timing(jump, branch="r", writes="none")),
-        (r"call|ba?(,.*)?", Timing(branch="j", writes="none")),
-        (r"f?b[a-z]+(,.*)?", Timing(branch="c", writes="none")),
         (r"cmp|tst|btst|t[a-z]{1,3}|unimp|illtrap|flush|nop", Timing(writes="none")),
+        (r"call %.*", Timing(jump, branch="r", writes="none")),
+        (r"call|ba?", Timing(branch="j", writes="none")),
+        (r"ba?,a.*", Timing(2, branch="j", writes="none")),  # with its delay slot, which is annulled
+        (r"f?b[a-z]+,a.*", Timing(branch="a", writes="none")),
+        (r"f?b[a-z]+(,.*)?", Timing(branch="c", writes="none")),
         (r"[a-z0-9]+", Timing(writes="last")),
     )
 

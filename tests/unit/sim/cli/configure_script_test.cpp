@@ -17,11 +17,14 @@ class ConfigureScript : public ::testing::Test {
     std::ofstream(checkout() + "/library") << "a library\n";
     install("libeigen3-dev");
     program("dpkg-query", "cat " + checkout() + "/packages");
-    program("cmake", "echo \"$@\" >>" + checkout() + "/calls\n" +
-                         "mkdir -p build/release && cd build/release && touch build.ninja && "
-                         "printf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\\nCMAKE_CACHEFILE_DIR:INTERNAL=%s\\n"
-                         "CIVETWEB_LIBRARY:FILEPATH=%s\\n' "
-                         "\"$root\" \"$PWD\" \"$root/library\" >CMakeCache.txt");
+    program("cmake",
+            "echo \"$@\" >>" + checkout() + "/calls\n" +
+                "mkdir -p build/release && cd build/release && touch build.ninja && "
+                "printf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\\nCMAKE_CACHEFILE_DIR:INTERNAL=%s\\n"
+                "CIVETWEB_LIBRARY:FILEPATH=%s\\n' "
+                "\"$root\" \"$PWD\" \"$root/library\" >CMakeCache.txt\n"
+                "case \"$*\" in *train*) printf 'TUMBLESIGHT_TRAINING:BOOL=ON\\nTorch_DIR:PATH=%s\\n' "
+                "\"$root/torch\" >>CMakeCache.txt ;; esac");
   }
 
   std::string checkout() const { return here_.path("checkout"); }
@@ -31,11 +34,11 @@ class ConfigureScript : public ::testing::Test {
   }
 
   // How often CMake ran in one more set-up, and with which arguments at last.
-  std::string configure(const std::string& folder = "checkout") const {
+  std::string configure(const std::string& folder = "checkout", const std::string& preset = "release") const {
     const std::string set_up = here_.path("set_up.sh");
     std::ofstream(set_up) << "set -euo pipefail\ncd " << here_.path(folder)
                           << "\nexport root=$PWD PATH=" << checkout() << "/programs:$PATH\n. "
-                          << TUMBLESIGHT_SOURCE_DIR << "/cmake/setup.sh\nconfigure_preset release\n";
+                          << TUMBLESIGHT_SOURCE_DIR << "/cmake/setup.sh\nconfigure_preset " << preset << "\n";
     fs::remove(checkout() + "/calls");
     const Outcome outcome = here_.run_command("timeout 30 bash " + set_up, "set_up");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
@@ -53,6 +56,22 @@ class ConfigureScript : public ::testing::Test {
 TEST_F(ConfigureScript, RunsOnceWhereNothingChanges) {
   EXPECT_EQ(configure(), "-S " + checkout() + " --preset release\n");
   EXPECT_EQ(configure(), "");
+}
+
+// One tree for both, so that training adds to what is built and a run goes on to use it.
+TEST_F(ConfigureScript, AddsTrainingToTheTreeOfTheRelease) {
+  fs::create_directories(checkout() + "/torch");
+  configure();
+  EXPECT_EQ(configure("checkout", "train"), "-S " + checkout() + " --preset train\n");
+  EXPECT_EQ(configure("checkout", "train"), "");
+  EXPECT_EQ(configure(), "");
+}
+
+// After `apt-get remove libtorch-dev` a run must not need it.
+TEST_F(ConfigureScript, LeavesTrainingOutWhenLibTorchIsGone) {
+  configure("checkout", "train");
+  install("libeigen3-dev\nlibcivetweb-dev");
+  EXPECT_EQ(configure(), "-S " + checkout() + " --preset release -U Torch_DIR -D TUMBLESIGHT_TRAINING=OFF\n");
 }
 
 // A build without a console has one as soon as the package of its server is there.
