@@ -180,7 +180,7 @@ def _words(cache):
 COMPARED = (
     "**Held against an independent simulator.** SIS 2.30, which the RTEMS project maintains, runs the bare-metal `flight_replay` of",
     "LEON3 unmodified to the golden digest. With the latencies of SIS and without caches the model (`sparc.SIS`) gives 2 843.0 M cycles",
-    "for boot and 20 frames, and SIS 2 843.2 M: 0.01 % apart. In the first step every stage agrees within 0.2 %. (2026-11-30; `sis",
+    "for boot and 20 frames, and SIS 2 843.2 M: 0.01 % apart. In the first step every stage agrees within 0.2 %; telemetry was not compared. (2026-11-30; `sis",
     "-leon3 -freq 100 -dumbio`, commands `+bp`, `run`, `perf`.) The caches, the predictors of branches and the models of the other",
     "processors have been held against nothing: their figures are estimates.",
 )

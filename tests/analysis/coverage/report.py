@@ -92,10 +92,13 @@ class File:
                 never = "true or false" if true == false else "true" if true == 0 else "false"
                 yield f"{self.name}:{line}: `{self.text((line, *rest))}` is never {never}"
 
+    def conditions_in(self, decision):
+        return [one for one in sorted(self.conditions_at) if decision[:2] <= one[:2] and one[2:] <= decision[2:]]
+
     def all_conditions(self):
         """(place of the decision, place of the condition, whether some executions show that it alone decides)"""
         for place, decides in sorted(self.decisions.items()):
-            inside = [one for one in sorted(self.conditions_at) if place[:2] <= one[:2] and one[2:] <= place[2:]]
+            inside = self.conditions_in(place)
             if len(inside) != len(decides):  # some are in another place: the decision is a macro, or an argument of one
                 continue
             for one, shown in zip(inside, decides):
@@ -104,10 +107,8 @@ class File:
 
     def in_macros(self):
         """(line, decision) of those whose conditions are not counted."""
-        counted = {decision for decision, _, _ in self.all_conditions()}
         for place, decides in sorted(self.decisions.items()):
-            inside = [one for one in self.conditions_at if place[:2] <= one[:2] and one[2:] <= place[2:]]
-            if place not in counted and len(inside) != len(decides):
+            if len(self.conditions_in(place)) != len(decides):
                 yield place[0], self.text(place)
 
     def undecided(self):

@@ -78,7 +78,8 @@ _SYNTAX = sys.modules[__name__]
 _M7_RULES = _rules(Timing(1, 2, unit="load/store"), Timing(1, 2, unit="load/store"), Timing(1, 2, unit="multiply"),
                    Timing(1, 2, unit="multiply"), Timing(1, 2, unit="multiply"), Timing(1, 3, unit="vector"))
 _M7_BRANCHES = Branches(mispredicted=8, predicted=True, indirect=2)
-_M7_BASIS = "Arm publishes no cycle timings. Load 2, multiply 2, one of each in a cycle, misprediction 8: as in the scheduling model of LLVM"
+_M7_BASIS = ("Arm publishes no cycle timings. Load 2 and multiply 2 are LLVM 19's, which has 3 for loads of bytes. Assumed: one of each in a "
+             "cycle, misprediction 8")
 M7_TIGHTLY_COUPLED = Model("Cortex-M7, TCM", _SYNTAX, _M7_RULES, issue_width=2, branches=_M7_BRANCHES,
                            basis=_M7_BASIS + ". All code and data in tightly coupled memory: the least that a part can take")
 M7_CACHED = Model("Cortex-M7, cached", _SYNTAX, _M7_RULES, issue_width=2, fetches=Cache(16384, 2, 32, 20),
@@ -97,4 +98,5 @@ A9 = Model("Cortex-A9", _SYNTAX,
            issue_width=2, fetches=Cache(32768, 4, 32, 25), accesses=Cache(32768, 4, 32, 25, store_miss_cycles=6),
            branches=Branches(mispredicted=9, predicted=True, indirect=2),
            basis="Cortex-A9 Technical Reference Manual (DDI 0388), appendix B: load 3, of bytes and halfwords 2 with latency 4, multiply 2 with "
-           "latency 4, long 3 with latency 5. In order, although the part reorders. Vector instructions and misses are assumed")
+           "latency 4, long 3 with latency 5. In order, although the part reorders. Vector instructions, misses and misprediction 9 are "
+           "assumed")

@@ -40,5 +40,5 @@ _RULES = (
 PPC750 = Model("PowerPC 750", sys.modules[__name__], _RULES, issue_width=2, flags_latency=1,
                fetches=Cache(32768, 8, 32, 30), accesses=Cache(32768, 8, 32, 30, store_miss_cycles=30),
                branches=Branches(mispredicted=4, predicted=True, indirect=2),
-               basis="IBM 750GX User's Manual, chapter 6: load 2:1, multiply at most 5 (2 to 5 by the operand: the most is assumed), divide "
-               "19, branches folded. In order, although the part reorders. Not known: what a miss costs on a RAD750; its L2 is left out")
+               basis="IBM 750GX User's Manual, chapter 6: load 2:1, branches folded, a multiplier that ends early for small operands. Assumed: "
+               "multiply 5, divide 19, misprediction 4, a miss 30 without the L2. In order, although the part reorders")

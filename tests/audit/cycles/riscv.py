@@ -33,5 +33,5 @@ _RULES = (
 )
 U54 = Model("U54", sys.modules[__name__], _RULES, fetches=Cache(32768, 8, 64, 20),
             accesses=Cache(32768, 8, 64, 20, store_miss_cycles=20), branches=Branches(mispredicted=3, predicted=True, indirect=1),
-            basis="SiFive E31/U54 manuals, *Execution pipeline*: word loads 2, others 3, multiply 5 and not pipelined, misprediction 3; "
-            "divide at most 34. Not known: the wait for the L2, 20 is assumed")
+            basis="SiFive E31 Manual, *Execution pipeline*, which the U54 is assumed to be like: word loads 2, others 3, multiply 5 and not "
+            "pipelined, misprediction 3. Assumed: divide 34, the wait for the L2 20")
