@@ -43,8 +43,9 @@ struct ConvBlock {
   static constexpr long kMacs = 1L * kColumns * kColumns * kWeights;  // including those with the padding
   // Those that convolve() of `kernels` executes. Where it is not used, the products with the padding are left
   // out.
-  static long macs_done(const Kernels<N>& kernels) {
-    const bool is_pooled = pooled_convolution_of(kernels) != nullptr;
+  static long macs_done(const Kernels<N>& kernels, bool averages) {
+    const bool is_pooled = averages ? of_this_shape(kernels.average_pooled_convolution) != nullptr
+                                    : of_this_shape(kernels.max_pooled_convolution) != nullptr;
     const bool spares_rows = is_pooled || kColumns % kernels.pixels == 0;
     const bool spares_columns = is_pooled || (spares_rows && kernels.skips_zeros);
     const int padded = kColumns == kSide ? 2 : 1;  // rows or columns beside the padding
@@ -63,13 +64,9 @@ struct ConvBlock {
   [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in,
                                         Sums& sums, MaxPooled& out) {
     out.values.fill({});
-    if constexpr (kMayPool) {
-      if (auto* const pooled_convolution = pooled_convolution_of(kernels)) {
-        pooled_convolution(kImage, in.values.data(), weights.bias.data(), weights.weight.data(),
-                           weights.shift.data(), out.row(0), MaxPooled::kRow, sums.data());
-        return;
-      }
-    }
+    if (convolves_and_pools<ConvInput<N>>(kernels.max_pooled_convolution, weights, in, sums, out.row(0),
+                                          MaxPooled::kRow))
+      return;
     for (int y = 0; y < kSideOut; ++y) {
       two_rows(kernels, weights, in, y, sums);
       kernels.max_pool(sums.data(), kColumns, kChannelsOut, weights.shift.data(), out.row(y));
@@ -81,22 +78,40 @@ struct ConvBlock {
   using AveragePooled = std::array<DenseInput<N>, kSideOut * kSideOut * kChannelsOut>;
   [[gnu::noinline]] static void forward(const Kernels<N>& kernels, const Weights& weights, const Input& in,
                                         Sums& sums, AveragePooled& out) {
+    constexpr int kRow = kSideOut * kChannelsOut;
+    if (convolves_and_pools<DenseInput<N>>(kernels.average_pooled_convolution, weights, in, sums, out.data(),
+                                           kRow))
+      return;
     for (int y = 0; y < kSideOut; ++y) {
       two_rows(kernels, weights, in, y, sums);
-      kernels.average_pool(sums.data(), kColumns, kChannelsOut, weights.shift.data(),
-                           out.data() + y * kSideOut * kChannelsOut);
+      kernels.average_pool(sums.data(), kColumns, kChannelsOut, weights.shift.data(), out.data() + y * kRow);
     }
   }
 
  private:
   static constexpr int kStrips = 3;
 
-  static constexpr bool kMayPool = N::kIsInteger && kHasLayerKernels;
   static constexpr ImageShape kImage{kSide, kChannelsIn, kChannelsOut};
 
-  static PooledConvolution<N>* pooled_convolution_of(const Kernels<N>& kernels) {
-    if constexpr (!kMayPool) return nullptr;
-    return kernels.pooled_convolution != nullptr ? kernels.pooled_convolution(kImage) : nullptr;
+  template <class Out>
+  using PooledConvolutionOf = PooledConvolution<N, Out>*(const ImageShape& shape);
+  // nullptr: there is none.
+  template <class Out>
+  static PooledConvolution<N, Out>* of_this_shape(PooledConvolutionOf<Out>* convolution_of) {
+    return convolution_of != nullptr ? convolution_of(kImage) : nullptr;
+  }
+  // False: no kernel does both for this layer.
+  template <class Out>
+  static bool convolves_and_pools(PooledConvolutionOf<Out>* convolution_of, const Weights& weights,
+                                  const Input& in, Sums& sums, Out* out, int out_row) {
+    if constexpr (N::kIsInteger) {
+      if (auto* const convolution = of_this_shape<Out>(convolution_of)) {
+        convolution(kImage, in.values.data(), weights.bias.data(), weights.weight.data(),
+                    weights.shift.data(), out, out_row, sums.data());
+        return true;
+      }
+    }
+    return false;
   }
   static constexpr ProductShape shape_of(int rows, int strips) {
     return {rows,        kColumns,

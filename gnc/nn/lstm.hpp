@@ -63,7 +63,7 @@ struct Lstm {
     constexpr ProductShape kFromHidden{1, 1, 0, 0, 1, kHidden, 0, kGates};
     kernels.multiply(kFromInput, in.data(), weights.bias.data(), weights.weight.data(), sums.data());
     kernels.multiply(kFromHidden, state.h.data(), sums.data(), weights.recurrent.data(), sums.data());
-    if constexpr (kHasLayerKernels && N::kIsInteger && kHidden % kIntegerChannels == 0) {
+    if constexpr (N::kIsInteger && kHidden % kIntegerChannels == 0) {
       if (kernels.update_lstm != nullptr) {
         kernels.update_lstm(sums.data(), weights.shift.data(), kHidden, state.h.data(), state.c.data());
         return;

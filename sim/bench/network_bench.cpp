@@ -59,8 +59,11 @@ double timed(const Run& run) {
 template <class N>
 double convolution_macs(const gnc::Kernels<N>& kernels) {
   long macs = 0;
-  gnc::for_each_index<0, gnc::kImageLayerCount>(
-      [&](auto index) { macs += gnc::Layer<N, decltype(index)::value>::macs_done(kernels); });
+  gnc::for_each_index<0, gnc::kImageLayerCount>([&](auto index) {
+    constexpr int kIndex = decltype(index)::value;
+    const bool averages = !gnc::is_image_layer(gnc::kLayers[kIndex + 1]);
+    macs += gnc::Layer<N, kIndex>::macs_done(kernels, averages);
+  });
   return static_cast<double>(macs);
 }
 

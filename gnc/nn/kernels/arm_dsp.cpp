@@ -3,9 +3,9 @@
 
 #include <cstring>
 
-#include "gnc/nn/kernels/chunked_convolution.hpp"
 #include "gnc/nn/kernels/scalar.hpp"
 #include "gnc/nn/kernels/sets.hpp"
+#include "gnc/nn/kernels/winograd.hpp"
 
 namespace tumblesight::gnc::kernels {
 namespace {
@@ -22,102 +22,56 @@ TUMBLESIGHT_INLINE int16x2_t odd_signed(std::uint32_t bytes) {
   asm("sxtb16 %0, %1, ror #8" : "=r"(numbers) : "r"(bytes));
   return numbers;
 }
-TUMBLESIGHT_INLINE int16x2_t odd_unsigned(std::uint32_t bytes) {
-  int16x2_t numbers;
-  asm("uxtb16 %0, %1, ror #8" : "=r"(numbers) : "r"(bytes));
-  return numbers;
-}
 
-// The four 8-bit inputs or weights of a group as 16-bit factors: numbers 0 and 2 in one word, 1 and 3 in the
-// other.
-struct Factors {
-  int16x2_t even, odd;
-};
-TUMBLESIGHT_INLINE Factors widened(const std::uint8_t* inputs) {
-  const std::uint32_t four = load_word(inputs);
-  return {static_cast<int16x2_t>(__uxtb16(four)), odd_unsigned(four)};
-}
-TUMBLESIGHT_INLINE Factors widened(const std::int8_t* weights) {
-  const std::uint32_t four = load_word(weights);
-  return {__sxtb16(static_cast<int8x4_t>(four)), odd_signed(four)};
-}
+// Convolutions, for WinogradImage.
+struct PairsOfProducts {
+  static constexpr int kTiles = 3, kChannels = 2;
 
-// Adds one group of one channel for six pixels. In assembly, since the compiler loads the words one at a time
-// and runs out of registers.
-TUMBLESIGHT_INLINE void add_group(std::int32_t (&sum)[6], const Factors*& values, const std::int8_t*& weight,
-                                  int step) {
-  std::int32_t even, odd;
-  std::uint64_t value;
-  asm("ldr %[odd], [%[weight]]\n"
-      "add %[weight], %[weight], %[step]\n"
-      "sxtb16 %[even], %[odd]\n"
-      "sxtb16 %[odd], %[odd], ror #8\n"
-      "ldrd %[value], %H[value], [%[values]], #8\n"
-      "smlad %[sum0], %[value], %[even], %[sum0]\n"
-      "smlad %[sum0], %H[value], %[odd], %[sum0]\n"
-      "ldrd %[value], %H[value], [%[values]], #8\n"
-      "smlad %[sum1], %[value], %[even], %[sum1]\n"
-      "smlad %[sum1], %H[value], %[odd], %[sum1]\n"
-      "ldrd %[value], %H[value], [%[values]], #8\n"
-      "smlad %[sum2], %[value], %[even], %[sum2]\n"
-      "smlad %[sum2], %H[value], %[odd], %[sum2]\n"
-      "ldrd %[value], %H[value], [%[values]], #8\n"
-      "smlad %[sum3], %[value], %[even], %[sum3]\n"
-      "smlad %[sum3], %H[value], %[odd], %[sum3]\n"
-      "ldrd %[value], %H[value], [%[values]], #8\n"
-      "smlad %[sum4], %[value], %[even], %[sum4]\n"
-      "smlad %[sum4], %H[value], %[odd], %[sum4]\n"
-      "ldrd %[value], %H[value], [%[values]], #8\n"
-      "smlad %[sum5], %[value], %[even], %[sum5]\n"
-      "smlad %[sum5], %H[value], %[odd], %[sum5]\n"
-      : [even] "=&r"(even), [odd] "=&r"(odd), [value] "=&r"(value), [values] "+r"(values),
-        [weight] "+r"(weight), [sum0] "+r"(sum[0]), [sum1] "+r"(sum[1]), [sum2] "+r"(sum[2]),
-        [sum3] "+r"(sum[3]), [sum4] "+r"(sum[4]), [sum5] "+r"(sum[5])
-      : [step] "r"(step)
-      : "memory");
-}
-
-// Convolution, for ChunkedConvolution.
-struct Int8 {
-  static constexpr int kPixels = 6;
-  static constexpr int kChunkGroups = 36;
-  static constexpr int kUnrolled = 3;
-  using Group = std::array<Factors, kPixels>;
-
-  TUMBLESIGHT_INLINE void prepare(const std::uint8_t* const (&in)[kPixels], int offset, Group& group) {
-#pragma GCC unroll 6
-    for (int p = 0; p < kPixels; ++p) group[p] = widened(in[p] + offset);
+  // Adds two pairs of input channels. In assembly, since the compiler loads the words one at a time and runs
+  // out of registers.
+  TUMBLESIGHT_INLINE void add_two_pairs(const std::int16_t*& in, const std::int16_t*& weights,
+                                        std::int32_t (&sum)[kTiles][kChannels]) {
+    std::uint64_t weight, value;
+    asm("ldrd %[weight], %H[weight], [%[weights]], #8\n"
+        "ldrd %[value], %H[value], [%[in]], #8\n"
+        "smlad %[sum00], %[value], %[weight], %[sum00]\n"
+        "smlad %[sum01], %[value], %H[weight], %[sum01]\n"
+        "smlad %[sum10], %H[value], %[weight], %[sum10]\n"
+        "smlad %[sum11], %H[value], %H[weight], %[sum11]\n"
+        "ldrd %[value], %H[value], [%[in]], #8\n"
+        "smlad %[sum20], %[value], %[weight], %[sum20]\n"
+        "smlad %[sum21], %[value], %H[weight], %[sum21]\n"
+        "ldrd %[weight], %H[weight], [%[weights]], #8\n"
+        "smlad %[sum00], %H[value], %[weight], %[sum00]\n"
+        "smlad %[sum01], %H[value], %H[weight], %[sum01]\n"
+        "ldrd %[value], %H[value], [%[in]], #8\n"
+        "smlad %[sum10], %[value], %[weight], %[sum10]\n"
+        "smlad %[sum11], %[value], %H[weight], %[sum11]\n"
+        "smlad %[sum20], %H[value], %[weight], %[sum20]\n"
+        "smlad %[sum21], %H[value], %H[weight], %[sum21]\n"
+        : [weight] "=&r"(weight), [value] "=&r"(value), [in] "+r"(in), [weights] "+r"(weights),
+          [sum00] "+r"(sum[0][0]), [sum01] "+r"(sum[0][1]), [sum10] "+r"(sum[1][0]), [sum11] "+r"(sum[1][1]),
+          [sum20] "+r"(sum[2][0]), [sum21] "+r"(sum[2][1])
+        :
+        : "memory");
   }
 
-  TUMBLESIGHT_INLINE void add(const Group* chunk, int groups, const std::int32_t* start, int start_step,
-                              const std::int8_t* weights, std::int32_t* out, int channels) {
-    if (start != out) {
-      for (int p = 0; p < kPixels; ++p)
-        std::memcpy(out + p * channels, start + p * start_step, sizeof(*start) * channels);
+  template <bool kFirst>
+  TUMBLESIGHT_INLINE void multiply_add(const std::int16_t* in, const std::int16_t* weights, int count,
+                                       std::uint32_t* sums) {
+    std::int32_t sum[kTiles][kChannels];
+#pragma GCC unroll 3
+    for (int t = 0; t < kTiles; ++t) {
+#pragma GCC unroll 2
+      for (int c = 0; c < kChannels; ++c)
+        sum[t][c] = kFirst ? 0 : static_cast<std::int32_t>(sums[t * kChannels + c]);
     }
-    add_to(out, chunk, groups, weights, channels);
-  }
-
-  [[gnu::noinline]] static void add_to(std::int32_t* out, const Group* chunk, int groups,
-                                       const std::int8_t* weights, int channels) {
-    const int step = channels * Int8Product::kGroup;
-    const Factors* const end = chunk[0].data() + groups * kPixels;
-    const Factors* const end_unrolled = chunk[0].data() + groups / kUnrolled * kUnrolled * kPixels;
-    for (int c = 0; c < channels; ++c, ++out, weights += Int8Product::kGroup) {
-      asm("" : "+r"(out));  // keeps one pointer instead of one per pixel
-      std::int32_t sum[kPixels];
-#pragma GCC unroll 6
-      for (int p = 0; p < kPixels; ++p) sum[p] = out[p * channels];
-      const std::int8_t* weight = weights;
-      const Factors* values = chunk[0].data();
-      while (values != end_unrolled) {
-        add_group(sum, values, weight, step);
-        add_group(sum, values, weight, step);
-        add_group(sum, values, weight, step);
-      }
-      while (values != end) add_group(sum, values, weight, step);
-#pragma GCC unroll 6
-      for (int p = 0; p < kPixels; ++p) out[p * channels] = sum[p];
+    const std::int16_t* const end = in + count * kTiles * Pair::kNumbers;
+    while (in != end) add_two_pairs(in, weights, sum);
+#pragma GCC unroll 3
+    for (int t = 0; t < kTiles; ++t) {
+#pragma GCC unroll 2
+      for (int c = 0; c < kChannels; ++c) sums[t * kChannels + c] = static_cast<std::uint32_t>(sum[t][c]);
     }
   }
 };
@@ -154,11 +108,7 @@ struct Int16 {
 
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  if (shape.rows * shape.columns >= Int8::kPixels) {
-    ChunkedConvolution<Int8>::product(shape, in, start, weights, out);
-  } else {
-    Blocks<Scalar<Int8Product>>::product<1, 1, 1>(shape, in, start, weights, out);
-  }
+  Blocks<Scalar<Int8Product>>::product<1, 1, 1>(shape, in, start, weights, out);
 }
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
@@ -175,7 +125,13 @@ void average_pool(const std::int32_t* sums, int columns, int channels, const std
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedDsp{InstructionSet::kDsp, Int8::kPixels, convolve, multiply, max_pool,
-                                    average_pool};
+const Kernels<FixedPoint> kFixedDsp{InstructionSet::kDsp,
+                                    1,
+                                    convolve,
+                                    multiply,
+                                    max_pool,
+                                    average_pool,
+                                    winograd_convolution<PairsOfProducts, MaxPooling<FixedPoint>>,
+                                    winograd_convolution<PairsOfProducts, AveragePooling<FixedPoint>>};
 
 }  // namespace tumblesight::gnc::kernels

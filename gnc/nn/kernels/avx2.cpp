@@ -209,7 +209,7 @@ struct WinogradOps {
 };
 using Tiles = WinogradTiles<WinogradOps>;
 
-PooledConvolution<FixedPoint>* pooled_convolution(const ImageShape& shape) {
+MaxPooledConvolution<FixedPoint>* max_pooled_convolution(const ImageShape& shape) {
   if (Windows::fits(shape)) return convolve_and_pool;
   return Tiles::fits(shape) ? Tiles::convolve : nullptr;
 }
@@ -229,8 +229,9 @@ void average_pool(const std::int32_t* sums, int columns, int channels, const std
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedAvx2{InstructionSet::kAvx2, 6,   convolve, multiply, max_pool, average_pool,
-                                     pooled_convolution,    true};
+const Kernels<FixedPoint> kFixedAvx2{
+    InstructionSet::kAvx2,  6,       convolve, multiply, max_pool, average_pool,
+    max_pooled_convolution, nullptr, true};
 
 #if TUMBLESIGHT_FLOAT32
 namespace {

@@ -119,7 +119,7 @@ struct WinogradOps {
 };
 using Tiles = WinogradTiles<WinogradOps>;
 
-PooledConvolution<FixedPoint>* pooled_convolution(const ImageShape& shape) {
+MaxPooledConvolution<FixedPoint>* max_pooled_convolution(const ImageShape& shape) {
   if (Windows::fits(shape)) return convolve_and_pool;
   return Tiles::fits(shape) ? Tiles::convolve : nullptr;
 }
@@ -229,7 +229,7 @@ void update_lstm(const std::int32_t* gates, const std::uint8_t* shift, int hidde
 }  // namespace
 
 const Kernels<FixedPoint> kFixedAvx512Vnni{
-    InstructionSet::kAvx512Vnni, 6,    convolve,   multiply, max_pool, average_pool,
-    pooled_convolution,          true, update_lstm};
+    InstructionSet::kAvx512Vnni, 6,       convolve, multiply,   max_pool, average_pool,
+    max_pooled_convolution,      nullptr, true,     update_lstm};
 
 }  // namespace tumblesight::gnc::kernels

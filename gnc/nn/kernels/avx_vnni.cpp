@@ -60,7 +60,7 @@ void convolve_and_pool(const ImageShape& shape, const std::uint8_t* in, const st
                        std::int32_t*) {
   Windows::convolve<Int8Pair, 1>(shape, in, start, weights, shift, out, out_row);
 }
-PooledConvolution<FixedPoint>* pooled_convolution(const ImageShape& shape) {
+MaxPooledConvolution<FixedPoint>* max_pooled_convolution(const ImageShape& shape) {
   return Windows::fits(shape) ? convolve_and_pool : nullptr;
 }
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
@@ -79,6 +79,7 @@ void average_pool(const std::int32_t* sums, int columns, int channels, const std
 }  // namespace
 
 const Kernels<FixedPoint> kFixedAvxVnni{
-    InstructionSet::kAvxVnni, 6, convolve, multiply, max_pool, average_pool, pooled_convolution, true};
+    InstructionSet::kAvxVnni, 6,       convolve, multiply, max_pool, average_pool,
+    max_pooled_convolution,   nullptr, true};
 
 }  // namespace tumblesight::gnc::kernels

@@ -35,28 +35,31 @@ struct ImageShape {
   constexpr int row() const { return (side + 2) * channels_in; }
 };
 
-// Whether a table of this build may have kernels for a whole layer.
+// Memory that a pooled convolution may use, in numbers of 32 bits. Elsewhere than on x86 it fits into what
+// the registration needs at another time (WorkingMemory).
 #if defined(__x86_64__)
-inline constexpr bool kHasLayerKernels = true;
+inline constexpr int kPooledConvolutionScratch = 50 * 1024;
 #else
-inline constexpr bool kHasLayerKernels = false;
+inline constexpr int kPooledConvolutionScratch = 8 * 1024;
 #endif
-// Memory that a pooled convolution may use, in numbers of 32 bits.
-inline constexpr int kPooledConvolutionScratch = kHasLayerKernels ? 50 * 1024 : 0;
 inline constexpr std::size_t kKernelScratchBytes = kPooledConvolutionScratch * sizeof(std::int32_t);
 
-// 3x3 convolution of a whole image and max pooling, without storing all sums.
+// 3x3 convolution of a whole image and pooling as by MaxPool or AveragePool, without storing all sums.
 //
 // in        from the first value of the border on
 // start     channels_out sums
 // weights   as for a Product of three strips of three pixels
 // shift     1..30 per channel
-// out       the first value inside the border, `out_row` values per row
+// out       the first value inside the border if there is one, `out_row` values per row
 // scratch   kPooledConvolutionScratch numbers, aligned to 64 bytes
-template <class N>
+template <class N, class Out>
 using PooledConvolution = void(const ImageShape& shape, const ConvInput<N>* in, const Sum<N>* start,
                                const typename N::ConvProduct::Weight* weights, const std::uint8_t* shift,
-                               ConvInput<N>* out, int out_row, std::int32_t* scratch);
+                               Out* out, int out_row, std::int32_t* scratch);
+template <class N>
+using MaxPooledConvolution = PooledConvolution<N, ConvInput<N>>;
+template <class N>
+using AveragePooledConvolution = PooledConvolution<N, DenseInput<N>>;
 
 // lstm_update() of lstm.hpp in fixed point, for a multiple of kIntegerChannels hidden units.
 using LstmUpdate = void(const std::int32_t* gates, const std::uint8_t* shift, int hidden, std::int16_t* h,
@@ -73,8 +76,9 @@ struct Kernels {
   MaxPool<N>* max_pool;
   AveragePool<N>* average_pool;
   // The fastest convolution with pooling of an image of this shape, nullptr if that is convolve() and
-  // max_pool(). nullptr: it is so for every shape.
-  PooledConvolution<N>* (*pooled_convolution)(const ImageShape& shape) = nullptr;
+  // max_pool() or average_pool(). nullptr: it is so for every shape.
+  MaxPooledConvolution<N>* (*max_pooled_convolution)(const ImageShape& shape) = nullptr;
+  AveragePooledConvolution<N>* (*average_pooled_convolution)(const ImageShape& shape) = nullptr;
   // Whether convolve() skips the zeros of a shape whose columns are a multiple of `pixels`.
   bool skips_zeros = false;
   LstmUpdate* update_lstm = nullptr;  // nullptr: lstm_update()

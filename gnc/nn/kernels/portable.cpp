@@ -1,4 +1,3 @@
-#include "gnc/nn/kernels/chunked_convolution.hpp"
 #include "gnc/nn/kernels/scalar.hpp"
 #include "gnc/nn/kernels/sets.hpp"
 #include "gnc/nn/kernels/winograd.hpp"
@@ -12,83 +11,57 @@ void product(const ProductShape& shape, const typename Kind::Input* in, const ty
   Blocks<Scalar<Kind>>::template product<2, 4, 8>(shape, in, start, weights, out);
 }
 
-// With 64-bit registers, two pixels per register: (x0 + 2^32 x1) times a weight updates two sums at once. A
-// negative low sum borrows from the high one; high_half() undoes that at the end.
-struct PixelPairs {
-  static constexpr int kPairs = 2;
-  static constexpr int kPixels = 2 * kPairs;
-  static constexpr int kChannels = 8;
-  static constexpr int kChunkGroups = 18;
-  using Group = std::array<std::array<std::uint64_t, kPairs>, Int8Product::kGroup>;
+// Without vectors, for WinogradImage.
+struct OneByOne {
+  static constexpr int kTiles = 3, kChannels = 4;
 
-  TUMBLESIGHT_INLINE std::uint64_t pack_pair(std::int32_t low, std::int32_t high) {
-    return static_cast<std::uint64_t>(low) + (static_cast<std::uint64_t>(high) << 32);
-  }
-  TUMBLESIGHT_INLINE std::int32_t low_half(std::uint64_t pair) { return static_cast<std::int32_t>(pair); }
-  TUMBLESIGHT_INLINE std::int32_t high_half(std::uint64_t pair) {
-    return static_cast<std::int32_t>((pair - static_cast<std::uint64_t>(low_half(pair))) >> 32);
-  }
-
-  TUMBLESIGHT_INLINE void prepare(const std::uint8_t* const (&in)[kPixels], int offset, Group& group) {
-#pragma GCC unroll 2
-    for (int p = 0; p < kPairs; ++p) {
+  // Each product is added after the next one is begun, so that the addition does not wait for it. The empty
+  // assembly statements keep this order. Without them the compiler also runs out of registers.
+  TUMBLESIGHT_INLINE void add_products(const std::int16_t* in, const std::int16_t* weights,
+                                       std::uint32_t (&sum)[kTiles][kChannels]) {
+    std::int32_t value[kTiles];
+#pragma GCC unroll 3
+    for (int t = 0; t < kTiles; ++t) value[t] = in[t * Pair::kNumbers];
+    std::int32_t product = 0;
 #pragma GCC unroll 4
-      for (int i = 0; i < Int8Product::kGroup; ++i) {
-        group[i][p] = pack_pair(in[2 * p][offset + i], in[2 * p + 1][offset + i]);
+    for (int c = 0; c < kChannels; ++c) {
+      const std::int32_t weight = weights[c * Pair::kNumbers];
+#pragma GCC unroll 3
+      for (int t = 0; t < kTiles; ++t) {
+        std::int32_t next = value[t] * weight;
+        asm volatile("" : "+r"(next));
+        if (c + t > 0) add_to(t > 0 ? sum[t - 1][c] : sum[kTiles - 1][c - 1], product);
+        product = next;
       }
     }
+    add_to(sum[kTiles - 1][kChannels - 1], product);
+  }
+  TUMBLESIGHT_INLINE void add_to(std::uint32_t& sum, std::int32_t product) {
+    sum += static_cast<std::uint32_t>(product);
+    asm volatile("" : "+r"(sum));
   }
 
-  [[gnu::noinline]] static void add(const Group* chunk, int groups, const std::int32_t* start, int start_step,
-                                    const std::int8_t* weights, std::int32_t* out, int channels) {
-    for (int c = 0; c < channels;
-         c += kChannels, start += kChannels, out += kChannels, weights += kChannels * Int8Product::kGroup) {
-      std::uint64_t sum[kPairs][kChannels];
-#pragma GCC unroll 2
-      for (int p = 0; p < kPairs; ++p) {
-#pragma GCC unroll 8
-        for (int k = 0; k < kChannels; ++k)
-          sum[p][k] = pack_pair(start[2 * p * start_step + k], start[(2 * p + 1) * start_step + k]);
-      }
-      const std::int8_t* weight = weights;
-      for (const Group* group = chunk; group != chunk + groups;
-           ++group, weight += channels * Int8Product::kGroup) {
+  template <bool kFirst>
+  TUMBLESIGHT_INLINE void multiply_add(const std::int16_t* in, const std::int16_t* weights, int count,
+                                       std::uint32_t* sums) {
+    std::uint32_t sum[kTiles][kChannels];
+#pragma GCC unroll 3
+    for (int t = 0; t < kTiles; ++t) {
 #pragma GCC unroll 4
-        for (int i = 0; i < Int8Product::kGroup; ++i) {
-#pragma GCC unroll 8
-          for (int k = 0; k < kChannels; ++k) {
-            const auto factor = static_cast<std::uint64_t>(std::int64_t{weight[k * Int8Product::kGroup + i]});
+      for (int c = 0; c < kChannels; ++c) sum[t][c] = kFirst ? 0 : sums[t * kChannels + c];
+    }
+    const std::int16_t* const end = in + count * kTiles * Pair::kNumbers;
+    for (; in != end; in += kTiles * Pair::kNumbers, weights += kChannels * Pair::kNumbers) {
 #pragma GCC unroll 2
-            for (int p = 0; p < kPairs; ++p) sum[p][k] += (*group)[i][p] * factor;
-          }
-          asm volatile("" ::: "memory");  // keeps later loads from moving up: registers are few
-        }
-      }
-#pragma GCC unroll 2
-      for (int p = 0; p < kPairs; ++p) {
-#pragma GCC unroll 8
-        for (int k = 0; k < kChannels; ++k) {
-          out[2 * p * channels + k] = low_half(sum[p][k]);
-          out[(2 * p + 1) * channels + k] = high_half(sum[p][k]);
-        }
-      }
+      for (int n = 0; n < Pair::kNumbers; ++n) add_products(in + n, weights + n, sum);
+    }
+#pragma GCC unroll 3
+    for (int t = 0; t < kTiles; ++t) {
+#pragma GCC unroll 4
+      for (int c = 0; c < kChannels; ++c) sums[t * kChannels + c] = sum[t][c];
     }
   }
 };
-
-constexpr bool kHas64Bits = sizeof(void*) == 8;
-
-void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
-              const std::int8_t* weights, std::int32_t* out) {
-  if (kHas64Bits && shape.rows * shape.columns >= PixelPairs::kPixels) {
-    ChunkedConvolution<PixelPairs>::product(shape, in, start, weights, out);
-  } else if (!kHas64Bits && Winograd::supports(shape)) {
-    Winograd::convolve(shape, in, start, weights, out);
-  } else {
-    product<Int8Product>(shape, in, start, weights, out);
-  }
-}
-constexpr int kConvolvedPixels = kHas64Bits ? PixelPairs::kPixels : Winograd::kPixels;
 
 template <class N>
 void max_pool(const Sum<N>* sums, int columns, int channels, const std::uint8_t* shift, ConvInput<N>* out) {
@@ -102,9 +75,14 @@ void average_pool(const Sum<N>* sums, int columns, int channels, const std::uint
 
 }  // namespace
 
-const Kernels<FixedPoint> kFixedPortable{
-    InstructionSet::kPortable, kConvolvedPixels,     convolve,
-    product<Int16Product>,     max_pool<FixedPoint>, average_pool<FixedPoint>};
+const Kernels<FixedPoint> kFixedPortable{InstructionSet::kPortable,
+                                         2,
+                                         product<Int8Product>,
+                                         product<Int16Product>,
+                                         max_pool<FixedPoint>,
+                                         average_pool<FixedPoint>,
+                                         winograd_convolution<OneByOne, MaxPooling<FixedPoint>>,
+                                         winograd_convolution<OneByOne, AveragePooling<FixedPoint>>};
 #if TUMBLESIGHT_FLOAT32
 const Kernels<Float32> kFloatPortable{InstructionSet::kPortable, 2,
                                       product<Float32Product>,   product<Float32Product>,

@@ -1,193 +1,271 @@
-// 3x3 convolution with two thirds of the multiplications, for processors with 32-bit registers and no
-// vectors, on which a multiplication costs as much as an addition. Winograd's minimal filter F(2, 3), applied
-// to the rows: for inputs d0...d3 and weights g0...g2
-//   d0 g0 + d1 g1 + d2 g2 = m0 + (m1 + m2) / 2        m0 = (d0 - d2) g0    m1 = (d1 + d2) (g0 + g1 + g2)
-//   d1 g0 + d2 g1 + d3 g2 =      (m1 - m2) / 2 - m3   m3 = (d1 - d3) g2    m2 = (d2 - d1) (g0 - g1 + g2)
-// This is exact, since m1 + m2 and m1 - m2 are even. The m are summed over all inputs and rows of weights
-// before they are combined. Included by the source files of the instruction sets, like blocks.hpp.
+// 3x3 convolution of a whole image with pooling by Winograd's minimal filters, for processors without
+// vectors: a quarter of the multiplications. Included by the source files of the instruction sets, like
+// blocks.hpp.
+//
+// The inputs of a batch of tiles are transformed and stay in memory. For a few output channels at a time the
+// weights are transformed; then each position of a tile is a product of inputs and weights over the input
+// channels; then the sums of each tile are transformed back and pooled.
 #pragma once
 
-#include "gnc/nn/kernels/blocks.hpp"
+#include <cstring>
+
+#include "gnc/nn/kernels/kernels.hpp"
+#include "gnc/nn/kernels/winograd_filters.hpp"
 
 namespace tumblesight::gnc {
 namespace {
 
-struct Winograd {
-  static constexpr int kTiles = 3;  // tiles of two adjacent pixels
-  static constexpr int kPixels = 2 * kTiles;
-  static constexpr int kGroup = Int8Product::kGroup;
-  static constexpr int kChunkGroups =
-      16;  // groups whose inputs are turned into differences and sums before they are used
+// Two 16-bit numbers in one register: low + 2^16 high, modulo 2^32. Sums, differences and multiples of such
+// pairs are those of their numbers. A negative low number borrows from the high one until it is stored.
+struct Pair {
+  static constexpr int kNumbers = 2;
+  static constexpr std::uint32_t kLowBytes = 0x00FF00FF, kSigns = 0x00800080;
 
-  // One input of a tile: d0 - d2 and d1 + d2, then d2 - d1 and d1 - d3. Two numbers per word, the first in
-  // the high half.
-  using TransformedInput = std::array<std::uint64_t, 2>;
-  using Group = std::array<std::array<TransformedInput, kTiles>, kGroup>;
-  using Sums = std::int32_t[kTiles][4];
-
-  // Whether `shape` is a 3-wide convolution over an even number of columns with enough pixels.
-  static bool supports(const ProductShape& shape) {
-    return shape.strip_length == 3 * shape.column_step && shape.columns % 2 == 0 &&
-           shape.rows * shape.columns >= kPixels;
+  TUMBLESIGHT_INLINE std::uint32_t add(std::uint32_t a, std::uint32_t b) { return a + b; }
+  TUMBLESIGHT_INLINE std::uint32_t sub(std::uint32_t a, std::uint32_t b) { return a - b; }
+  template <int kBits>
+  TUMBLESIGHT_INLINE std::uint32_t shift(std::uint32_t a) {
+    return a << kBits;
+  }
+  // Two of four bytes at a multiple of four: the others for the other `half`, 0 or 1. Which ones they are
+  // depends on the byte order of the processor.
+  TUMBLESIGHT_INLINE std::uint32_t load(const std::uint8_t* from, int half) {
+    return (load_word(from) >> (8 * half)) & kLowBytes;
+  }
+  TUMBLESIGHT_INLINE std::uint32_t load(const std::int8_t* from, int half) {
+    return (((load_word(from) >> (8 * half)) & kLowBytes) ^ kSigns) - kSigns;
+  }
+  TUMBLESIGHT_INLINE void store(std::uint32_t pair, std::int16_t* to) {
+    const std::uint32_t numbers = pair + ((pair & 0x8000U) << 1);
+    std::memcpy(__builtin_assume_aligned(to, sizeof numbers), &numbers, sizeof numbers);
   }
 
-  TUMBLESIGHT_INLINE std::uint64_t pack_pair(std::int32_t first, std::int32_t second) {
-    return std::uint64_t{static_cast<std::uint32_t>(first)} << 32 | static_cast<std::uint32_t>(second);
+ private:
+  TUMBLESIGHT_INLINE std::uint32_t load_word(const void* from) {
+    std::uint32_t word;
+    std::memcpy(&word, __builtin_assume_aligned(from, sizeof word), sizeof word);
+    return word;
+  }
+};
+
+// Ops defines
+//   kTiles, kChannels   tiles and output channels whose sums are in registers together
+//   void multiply_add<kFirst>(const std::int16_t* inputs, const std::int16_t* weights, int count,
+//                             std::uint32_t* sums)
+//     sums[t][c] = (kFirst ? 0 : sums[t][c]) + sum over i < count and n < 2 of inputs[i][t][n] *
+//     weights[i][c][n], modulo 2^32. `count` is even
+template <class Ops, class Filter>
+struct WinogradImage {
+  static constexpr int kTile = Filter::kTile, kPatch = Filter::kPatch, kPositions = kPatch * kPatch;
+  static constexpr int kTiles = Ops::kTiles, kChannels = Ops::kChannels;
+  static constexpr int kGroup = Int8Product::kGroup, kPairs = kGroup / Pair::kNumbers;
+  static constexpr int kChunk = 24;  // input channels whose weights are in memory together
+  static constexpr int kWeights = kPositions * kChannels * kChunk;
+  static_assert(kChunk % kGroup == 0 && kPairs == 2 && kIntegerChannels % kChannels == 0);
+
+  // Tiles of a row or column. The last one is moved back to end at the last pixel; the windows that it
+  // computes a second time get the same values.
+  static constexpr int tiles_of_row(const ImageShape& shape) { return (shape.columns() + kTile - 1) / kTile; }
+  static constexpr long products(const ImageShape& shape) {
+    return 1L * tiles_of_row(shape) * tiles_of_row(shape) * kPositions;
+  }
+  // Rows of tiles whose inputs and sums fit into the scratch memory beside the weights.
+  static constexpr int rows_of_batch(const ImageShape& shape) {
+    constexpr int kLeft = kPooledConvolutionScratch - kWeights / 2;
+    const int group = kPositions * kTiles * (shape.channels_in / 2 + kChannels);
+    return min(kLeft / group * kTiles / tiles_of_row(shape), tiles_of_row(shape));
+  }
+  static constexpr bool fits(const ImageShape& shape) {
+    return shape.columns() >= kTile && shape.channels_in % kGroup == 0 &&
+           shape.channels_in <= Filter::kMaxChannelsIn && shape.channels_out % kChannels == 0 &&
+           rows_of_batch(shape) > 0;
   }
 
-  // `column_step`: values from one pixel of a row to the next.
-  TUMBLESIGHT_INLINE void transform_input(const std::uint8_t* const (&in)[kTiles], int offset,
-                                          int column_step, Group& group) {
-    for (int t = 0; t < kTiles; ++t) {
-      const std::uint8_t* const d = in[t] + offset;
-#pragma GCC unroll 4
-      for (int i = 0; i < kGroup; ++i) {
-        const std::int32_t d0 = d[i], d1 = d[column_step + i], d2 = d[2 * column_step + i],
-                           d3 = d[3 * column_step + i];
-        group[i][t] = {pack_pair(d0 - d2, d1 + d2), pack_pair(d2 - d1, d1 - d3)};
-      }
+  // In the scratch memory: sums by position, tile and channel; weights and inputs by position, pair of input
+  // channels, output channel or tile, and number in the pair.
+  struct Batch {
+    int first_row, tiles, groups;  // groups of kTiles tiles; the last tile fills up the last group
+    std::uint32_t* sums;
+    std::int16_t *weights, *inputs;
+
+    Batch(const ImageShape& shape, int row, std::int32_t* scratch)
+        : first_row(row),
+          tiles(min(rows_of_batch(shape), tiles_of_row(shape) - row) * tiles_of_row(shape)),
+          groups((tiles + kTiles - 1) / kTiles),
+          sums(reinterpret_cast<std::uint32_t*>(scratch)),
+          weights(reinterpret_cast<std::int16_t*>(scratch + kPositions * groups * kTiles * kChannels)),
+          inputs(weights + kWeights) {}
+  };
+  struct Place {  // of a tile: its first pixel
+    int y, x;
+  };
+  static Place place_of(const ImageShape& shape, const Batch& batch, int tile) {
+    const int row = tile / tiles_of_row(shape), last = shape.columns() - kTile;
+    return {min(kTile * (batch.first_row + row), last),
+            min(kTile * (tile - row * tiles_of_row(shape)), last)};
+  }
+
+  // One tile and pair of input channels. `step`: from one position to the next.
+  TUMBLESIGHT_INLINE void transform_patch(const std::uint8_t* in, int half, int row, int column, int step,
+                                          std::int16_t* out) {
+    std::uint32_t rows[kPatch][kPatch];  // by row of positions and column of inputs
+#pragma GCC unroll 6
+    for (int x = 0; x < kPatch; ++x) {
+      std::uint32_t d[kPatch], transformed[kPatch];
+#pragma GCC unroll 6
+      for (int y = 0; y < kPatch; ++y) d[y] = Pair::load(in + y * row + x * column, half);
+      Filter::template inputs<Pair>(d, transformed);
+#pragma GCC unroll 6
+      for (int u = 0; u < kPatch; ++u) rows[u][x] = transformed[u];
+    }
+#pragma GCC unroll 6
+    for (int u = 0; u < kPatch; ++u) {
+      std::uint32_t transformed[kPatch];
+      Filter::template inputs<Pair>(rows[u], transformed);
+#pragma GCC unroll 6
+      for (int v = 0; v < kPatch; ++v, out += step) Pair::store(transformed[v], out);
     }
   }
-
-  // Adds the products of a group's inputs and the weights of one channel.
-#if defined(__sparc__)
-  // In assembly: a pair is loaded with one instruction. The compiler loads its halves separately and runs out
-  // of registers.
-  TUMBLESIGHT_INLINE void add(const Group* group, const std::int8_t* const (&weight)[3], Sums& sums) {
-#define TUMBLESIGHT_TILE(at, a, b, c, d) \
-  "ldd [%[in]+" #at                      \
-  "], %%o0\n\t"                          \
-  "smul %%o0, %%o2, %%o0\n\t"            \
-  "add %[" #a "], %%o0, %[" #a           \
-  "]\n\t"                                \
-  "smul %%o1, %%o4, %%o1\n\t"            \
-  "add %[" #b "], %%o1, %[" #b           \
-  "]\n\t"                                \
-  "ldd [%[in]+8+" #at                    \
-  "], %%o0\n\t"                          \
-  "smul %%o0, %%o3, %%o0\n\t"            \
-  "add %[" #c "], %%o0, %[" #c           \
-  "]\n\t"                                \
-  "smul %%o1, %%o5, %%o1\n\t"            \
-  "add %[" #d "], %%o1, %[" #d "]\n\t"
-#define TUMBLESIGHT_INPUT(i, at)                                                                            \
-  "ldsb [%[g0]+" #i                                                                                         \
-  "], %%o2\n\t"                                                                                             \
-  "ldsb [%[g1]+" #i                                                                                         \
-  "], %%o3\n\t"                                                                                             \
-  "ldsb [%[g2]+" #i                                                                                         \
-  "], %%o5\n\t"                                                                                             \
-  "add %%o2, %%o5, %%o0\n\t"                                                                                \
-  "add %%o0, %%o3, %%o4\n\t"                                                                                \
-  "sub %%o0, %%o3, %%o3\n\t" TUMBLESIGHT_TILE(at, a0, a1, a2, a3) TUMBLESIGHT_TILE(at + 16, b0, b1, b2, b3) \
-      TUMBLESIGHT_TILE(at + 32, c0, c1, c2, c3)
-    auto& [a, b, c] = sums;
-    asm volatile(TUMBLESIGHT_INPUT(0, 0) TUMBLESIGHT_INPUT(1, 48) TUMBLESIGHT_INPUT(2, 96)
-                     TUMBLESIGHT_INPUT(3, 144)
-                 : [a0] "+r"(a[0]), [a1] "+r"(a[1]), [a2] "+r"(a[2]), [a3] "+r"(a[3]), [b0] "+r"(b[0]),
-                   [b1] "+r"(b[1]), [b2] "+r"(b[2]), [b3] "+r"(b[3]), [c0] "+r"(c[0]), [c1] "+r"(c[1]),
-                   [c2] "+r"(c[2]), [c3] "+r"(c[3])
-                 : [in] "r"(group), [g0] "r"(weight[0]), [g1] "r"(weight[1]), [g2] "r"(weight[2])
-                 : "o0", "o1", "o2", "o3", "o4", "o5", "memory");
-#undef TUMBLESIGHT_INPUT
-#undef TUMBLESIGHT_TILE
-  }
-#else
-  TUMBLESIGHT_INLINE void add(const Group* group, const std::int8_t* const (&weight)[3], Sums& sums) {
-#pragma GCC unroll 4
-    for (int i = 0; i < kGroup; ++i) {
-      const std::int32_t g0 = weight[0][i], g1 = weight[1][i], g2 = weight[2][i];
-      const std::int32_t factor[4] = {g0, (g0 + g2) + g1, (g0 + g2) - g1, g2};
-#pragma GCC unroll 3
-      for (int t = 0; t < kTiles; ++t) {
-        const TransformedInput& two = (*group)[i][t];
-        add_to(sums[t][0], static_cast<std::int32_t>(two[0] >> 32), factor[0]);
-        add_to(sums[t][1], static_cast<std::int32_t>(two[0]), factor[1]);
-        add_to(sums[t][2], static_cast<std::int32_t>(two[1] >> 32), factor[2]);
-        add_to(sums[t][3], static_cast<std::int32_t>(two[1]), factor[3]);
-      }
-    }
-  }
-  // The empty assembly statement finishes this sum before the next one starts. Without it the compiler
-  // interleaves too many sums and runs out of registers.
-  TUMBLESIGHT_INLINE void add_to(std::int32_t& sum, std::int32_t value, std::int32_t factor) {
-    sum += value * factor;
-    asm volatile("" : : "r"(sum) : "memory");
-  }
-#endif
-
-  // Adds the products of a chunk to the sums of six pixels in all channels. Not inlined: otherwise the
-  // compiler splits the chunk into separate variables. `step`: from the weights of a group to those of the
-  // next group; `column_step`: to those of the next column of the filter.
-  [[gnu::noinline]] static void add_chunk(const Group* chunk, int groups, int step, int column_step,
-                                          const std::int32_t* start, int start_step,
-                                          const std::int8_t* weights, std::int32_t* out, int channels) {
-    for (int c = 0; c < channels; ++c) {
-      Sums sums{};
-      const std::int8_t* weight[3] = {weights, weights + column_step, weights + 2 * column_step};
-      for (const Group* group = chunk; group != chunk + groups; ++group) {
-        add(group, weight, sums);
-        for (const std::int8_t*& at : weight) at += step;
-      }
-      transform_output(sums, start + c, start_step, out + c, channels);
-      weights += kGroup;
-    }
-  }
-
-  TUMBLESIGHT_INLINE void transform_output(const Sums& sums, const std::int32_t* start, int start_step,
-                                           std::int32_t* out, int out_step) {
-#pragma GCC unroll 3
-    for (const auto& m : sums) {
-      out[0] = start[0] + (m[0] + ((m[1] + m[2]) >> 1));
-      out[out_step] = start[start_step] + (((m[1] - m[2]) >> 1) - m[3]);
-      start += 2 * start_step;
-      out += 2 * out_step;
-    }
-  }
-
-  // Six pixels, all channels.
-  TUMBLESIGHT_INLINE void tiles(const ProductShape& shape, const std::uint8_t* const (&in)[kTiles],
-                                const std::int32_t* start, const std::int8_t* weights, std::int32_t* out) {
-    Group chunk[kChunkGroups];
-    // If a pixel has only one group of inputs, all strips form one chunk.
-    const bool joined = shape.column_step == kGroup && shape.strips <= kChunkGroups;
-    const int runs = joined ? 1 : shape.strips;
-    const int run = joined ? shape.strips : shape.column_step / kGroup;  // groups
-    const int in_step = joined ? shape.strip_step : kGroup;
-    const int weight_column_step = shape.column_step * shape.channels;
-    const int step = joined ? 3 * weight_column_step : kGroup * shape.channels;
-    int start_step = 0;  // the same for every pixel
-    for (int strip = 0; strip < runs; ++strip) {
-      for (int first = 0; first < run; first += kChunkGroups) {
-        const int groups = min(run - first, kChunkGroups);
-        for (int g = 0; g < groups; ++g) {
-          transform_input(in, strip * shape.strip_step + (first + g) * in_step, shape.column_step, chunk[g]);
+  static void transform_inputs(const ImageShape& shape, const Batch& batch, const std::uint8_t* in) {
+    const int group_step = shape.channels_in * kTiles, step = batch.groups * group_step;
+    for (int t = 0; t < batch.groups * kTiles; ++t) {
+      const Place place = place_of(shape, batch, min(t, batch.tiles - 1));
+      const std::uint8_t* const patch = in + place.y * shape.row() + place.x * shape.channels_in;
+      std::int16_t* const out = batch.inputs + t / kTiles * group_step + t % kTiles * Pair::kNumbers;
+      for (int c = 0; c < shape.channels_in; c += kGroup) {
+        for (int half = 0; half < kPairs; ++half) {
+          transform_patch(patch + c, half, shape.row(), shape.channels_in, step,
+                          out + (c + half * Pair::kNumbers) * kTiles);
         }
-        add_chunk(chunk, groups, step, weight_column_step, start, start_step,
-                  weights + strip * 3 * weight_column_step + first * step, out, shape.channels);
-        start = out;
-        start_step = shape.channels;
       }
     }
   }
 
-  // The last tiles are moved back to end at the last pixel; the pixels computed a second time get the same
-  // values.
-  static void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
-                       const std::int8_t* weights, std::int32_t* out) {
-    const int columns = shape.columns / 2;
-    const int count = shape.rows * columns;
-    for (int next = 0; next < count; next += kTiles) {
-      const int first = min(next, count - kTiles);
-      const std::uint8_t* tile_in[kTiles];
-      for (int t = 0; t < kTiles; ++t) {
-        const int y = (first + t) / columns;
-        tile_in[t] = in + y * shape.row_step + 2 * (first + t - y * columns) * shape.column_step;
+  // One pair of input channels of one output channel. `step`: from one column of the filter to the next.
+  static constexpr int kPositionStep = kChunk * kChannels;
+  TUMBLESIGHT_INLINE void transform_filter(const std::int8_t* weights, int half, int step,
+                                           std::int16_t* out) {
+    std::uint32_t columns[3][kPatch];  // by row of weights and column of positions
+#pragma GCC unroll 3
+    for (int y = 0; y < 3; ++y) {
+      std::uint32_t g[3];
+#pragma GCC unroll 3
+      for (int x = 0; x < 3; ++x, weights += step) g[x] = Pair::load(weights, half);
+      Filter::template weights<Pair>(g, columns[y]);
+    }
+#pragma GCC unroll 6
+    for (int v = 0; v < kPatch; ++v) {
+      const std::uint32_t g[3] = {columns[0][v], columns[1][v], columns[2][v]};
+      std::uint32_t transformed[kPatch];
+      Filter::template weights<Pair>(g, transformed);
+#pragma GCC unroll 6
+      for (int u = 0; u < kPatch; ++u) Pair::store(transformed[u], out + (u * kPatch + v) * kPositionStep);
+    }
+  }
+  // Of `channels` input channels and kChannels output channels.
+  [[gnu::noinline]] static void transform_filters(const ImageShape& shape, const std::int8_t* weights,
+                                                  int channels, std::int16_t* out) {
+    const int step = shape.channels_in * shape.channels_out;
+    for (int first = 0; first < channels; first += kGroup, weights += shape.channels_out * kGroup) {
+      for (int half = 0; half < kPairs; ++half) {
+        for (int c = 0; c < kChannels; ++c, out += Pair::kNumbers)
+          transform_filter(weights + c * kGroup, half, step, out);
       }
-      tiles(shape, tile_in, start, weights, out + 2 * first * shape.channels);
+    }
+  }
+
+  // The sums of all tiles of the batch and `channels` input channels, added to those before.
+  template <bool kFirst>
+  [[gnu::noinline]] static void multiply(const Batch& batch, const std::int16_t* inputs, int group_step,
+                                         int channels) {
+    const std::int16_t* weights = batch.weights;
+    std::uint32_t* sums = batch.sums;
+    for (int position = 0; position < kPositions; ++position, weights += kPositionStep) {
+      for (int g = 0; g < batch.groups; ++g, inputs += group_step, sums += kTiles * kChannels)
+        Ops::template multiply_add<kFirst>(inputs, weights, channels / Pair::kNumbers, sums);
+    }
+  }
+
+  // The pooled windows of one channel of a tile. `sums`: its first position, `step` numbers from each other.
+  template <class Pool>
+  TUMBLESIGHT_INLINE void pool_tile(const std::uint32_t* sums, int step, std::uint32_t start, int shift,
+                                    int channels, typename Pool::Out* out, int out_row) {
+    std::uint32_t half[kTile][kPatch];  // by column of sums and row of positions
+#pragma GCC unroll 6
+    for (int u = 0; u < kPatch; ++u) {
+      std::uint32_t m[kPatch], transformed[kTile];
+#pragma GCC unroll 6
+      for (int v = 0; v < kPatch; ++v, sums += step) m[v] = *sums;
+      Filter::template sums<Pair>(m, transformed);
+#pragma GCC unroll 4
+      for (int x = 0; x < kTile; ++x) half[x][u] = transformed[x];
+    }
+    std::int32_t tile[kTile][kTile];
+#pragma GCC unroll 4
+    for (int x = 0; x < kTile; ++x) {
+      std::uint32_t transformed[kTile];
+      Filter::template sums<Pair>(half[x], transformed);
+#pragma GCC unroll 4
+      for (int y = 0; y < kTile; ++y)
+        tile[y][x] = static_cast<std::int32_t>(
+            static_cast<std::uint32_t>(Filter::unscaled(transformed[y], y, x)) + start);
+    }
+#pragma GCC unroll 2
+    for (int y = 0; y < kTile; y += 2) {
+#pragma GCC unroll 2
+      for (int x = 0; x < kTile; x += 2) {
+        const std::int32_t four[4] = {tile[y][x], tile[y][x + 1], tile[y + 1][x], tile[y + 1][x + 1]};
+        Pool::pool(four, shift, out[y / 2 * out_row + x / 2 * channels]);
+      }
+    }
+  }
+  // kChannels channels of all tiles of the batch.
+  template <class Pool>
+  [[gnu::noinline]] static void pool_tiles(const ImageShape& shape, const Batch& batch,
+                                           const std::int32_t* start, const std::uint8_t* shift,
+                                           typename Pool::Out* out, int out_row) {
+    const int step = batch.groups * kTiles * kChannels;
+    for (int t = 0; t < batch.tiles; ++t) {
+      const Place place = place_of(shape, batch, t);
+      typename Pool::Out* const windows = out + place.y / 2 * out_row + place.x / 2 * shape.channels_out;
+      for (int c = 0; c < kChannels; ++c) {
+        pool_tile<Pool>(batch.sums + t * kChannels + c, step, static_cast<std::uint32_t>(start[c]), shift[c],
+                        shape.channels_out, windows + c, out_row);
+      }
+    }
+  }
+
+  template <class Pool>
+  static void convolve(const ImageShape& shape, const std::uint8_t* in, const std::int32_t* start,
+                       const std::int8_t* weights, const std::uint8_t* shift, typename Pool::Out* out,
+                       int out_row, std::int32_t* scratch) {
+    const int group_step = shape.channels_in * kTiles;
+    for (int row = 0; row < tiles_of_row(shape); row += rows_of_batch(shape)) {
+      const Batch batch(shape, row, scratch);
+      transform_inputs(shape, batch, in);
+      for (int c = 0; c < shape.channels_out; c += kChannels) {
+        for (int chunk = 0; chunk < shape.channels_in; chunk += kChunk) {
+          const int channels = min(kChunk, shape.channels_in - chunk);
+          transform_filters(shape, weights + chunk * shape.channels_out + c * kGroup, channels,
+                            batch.weights);
+          (chunk == 0 ? multiply<true> : multiply<false>)(batch, batch.inputs + chunk * kTiles, group_step,
+                                                          channels);
+        }
+        pool_tiles<Pool>(shape, batch, start + c, shift + c, out + c, out_row);
+      }
     }
   }
 };
+
+// The filter that needs fewer products for the shape, the smaller one if both need the same.
+template <class Ops, class Pool>
+PooledConvolution<FixedPoint, typename Pool::Out>* winograd_convolution(const ImageShape& shape) {
+  using Large = WinogradImage<Ops, MinimalFilter4>;
+  using Small = WinogradImage<Ops, MinimalFilter2>;
+  if (Large::fits(shape) && Large::products(shape) < Small::products(shape))
+    return Large::template convolve<Pool>;
+  return Small::fits(shape) ? Small::template convolve<Pool> : nullptr;
+}
 
 }  // namespace
 }  // namespace tumblesight::gnc

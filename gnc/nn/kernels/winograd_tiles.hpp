@@ -1,21 +1,10 @@
-// 3x3 convolution with a quarter of the multiplications, for vectors of 16-bit products: Winograd's minimal
-// filter F(4x4, 3x3), exact in integers, with pooling of the tiles while they are in registers.
-//
-// A tile of 4x4 sums is A' [(G g G') * (B' d B)] A of 6x6 inputs d and 3x3 weights g, where * multiplies
-// element by element:
-//        4  0 -5  0  1  0          3  0  0           2  0  0  0     Column j of A is multiplied by the
-//        0 -4 -4  1  1  0          1  1  1          -4 -2 -1 -1     factor 24, 12, 6, 6 that makes it an
-//   B' = 0  4 -4 -1  1  0      G = 1 -1  1      A = -4  2 -1  1     integer, so the sums of row i and
-//        0 -2 -1  2  1  0          1  2  4           1  1  1  2     column j of a tile come out times
-//        0  2 -1 -2  1  0          1 -2  4           1 -1  1 -2     9 2^(e(i) + e(j)), e = 3, 2, 1, 1.
-//        0  4  0 -5  0  1          0  0  3           0  0  0  2
-// Inputs of 8 bits become at most 17340 in magnitude, weights at most 6272: both fit into 16 bits. The sums
-// of their products may exceed 32 bits. They count modulo 2^32, where 9 has an inverse; a sum is exact if its
-// magnitude is below 2^25, which kMaxChannelsIn ensures. Included by the source files of the instruction
-// sets, like blocks.hpp.
+// 3x3 convolution of a whole image with max pooling by Winograd's minimal filter F(4x4, 3x3), for vectors of
+// 16-bit products: a quarter of the multiplications. The tiles are pooled while they are in registers.
+// Included by the source files of the instruction sets, like blocks.hpp.
 #pragma once
 
 #include "gnc/nn/kernels/pooled_windows.hpp"
+#include "gnc/nn/kernels/winograd_filters.hpp"
 #include "gnc/nn/kernels/x86_vectors.hpp"
 
 namespace tumblesight::gnc {
@@ -37,12 +26,12 @@ struct WinogradTiles {
   static constexpr int kLanes = Ops::kLanes;
   static constexpr int kPacks = 2;  // vectors of channels that are computed together
   static constexpr int kChannels = kPacks * kLanes;
-  static constexpr int kTile = 4, kPatch = 6, kPositions = kPatch * kPatch, kFilter = 9;
+  static constexpr int kTile = MinimalFilter4::kTile, kPatch = MinimalFilter4::kPatch,
+                       kPositions = kPatch * kPatch;
   static constexpr int kGroup = Int8Product::kGroup;
   static constexpr int kChunk = 32;          // channels of the input that are transformed together
   static constexpr int kPairs = kChunk / 2;  // pairs of 16-bit inputs
   static constexpr int kBatch = 9;           // tiles whose sums are in memory together
-  static constexpr int kMaxChannelsIn = 96;  // 9 * 96 * 255 * 127 < 2^25
   static constexpr int kMaxInputPairs = 36 * kPositions * kPairs;
 
   // Pairs of inputs by position, tile and channel. In each chunk first the even channels of every group, then
@@ -61,45 +50,35 @@ struct WinogradTiles {
   static bool fits(const ImageShape& shape) {
     const int tiles = tiles_of(shape);
     return shape.columns() % kTile == 0 && tiles >= kBatch && shape.channels_in % kChunk == 0 &&
-           shape.channels_in <= kMaxChannelsIn && shape.channels_out % kChannels == 0 &&
+           shape.channels_in <= MinimalFilter4::kMaxChannelsIn && shape.channels_out % kChannels == 0 &&
            tiles * kPositions * shape.channels_in / 2 <= kMaxInputPairs;
   }
 
-  // B' d, of vectors of 16-bit numbers.
-  TUMBLESIGHT_INLINE void transform_inputs(const __m256i (&d)[kPatch], __m256i (&out)[kPatch]) {
-    const auto times_4 = [](__m256i a) __attribute__((always_inline)) {
-      return _mm256_slli_epi16(a, 2);
-    };
-    const __m256i d42 = _mm256_sub_epi16(d[4], d[2]), d31 = _mm256_sub_epi16(d[3], d[1]);
-    const __m256i twice = _mm256_add_epi16(d31, d31);
-    out[0] = _mm256_add_epi16(times_4(_mm256_sub_epi16(d[0], d[2])), d42);
-    out[1] = _mm256_sub_epi16(_mm256_add_epi16(d[3], d[4]), times_4(_mm256_add_epi16(d[1], d[2])));
-    out[2] = _mm256_add_epi16(_mm256_sub_epi16(d[4], d[3]), times_4(_mm256_sub_epi16(d[1], d[2])));
-    out[3] = _mm256_add_epi16(d42, twice);
-    out[4] = _mm256_sub_epi16(d42, twice);
-    out[5] = _mm256_sub_epi16(_mm256_sub_epi16(d[5], d[3]), times_4(d31));
-  }
-  // G g.
-  TUMBLESIGHT_INLINE void transform_weights(const Vector (&g)[3], Vector (&out)[kPatch]) {
-    const Vector ends = Ops::add_16(g[0], g[2]);
-    const Vector far = Ops::add_16(g[0], Ops::template shift_16<2>(g[2]));
-    const Vector twice = Ops::add_16(g[1], g[1]);
-    out[0] = Ops::add_16(g[0], Ops::add_16(g[0], g[0]));
-    out[1] = Ops::add_16(ends, g[1]);
-    out[2] = Ops::sub_16(ends, g[1]);
-    out[3] = Ops::add_16(far, twice);
-    out[4] = Ops::sub_16(far, twice);
-    out[5] = Ops::add_16(g[2], Ops::add_16(g[2], g[2]));
-  }
-  // A' m.
-  TUMBLESIGHT_INLINE void transform_sums(const Vector (&m)[kPatch], Vector (&out)[kTile]) {
-    const Vector p = Ops::add_32(m[1], m[2]), q = Ops::sub_32(m[1], m[2]);
-    const Vector r = Ops::add_32(m[3], m[4]), s = Ops::sub_32(m[3], m[4]);
-    out[0] = Ops::add_32(Ops::template shift_32<1>(Ops::sub_32(m[0], Ops::add_32(p, p))), r);
-    out[1] = Ops::sub_32(s, Ops::add_32(q, q));
-    out[2] = Ops::sub_32(r, p);
-    out[3] = Ops::sub_32(Ops::template shift_32<1>(Ops::add_32(s, m[5])), q);
-  }
+  using Filter = MinimalFilter4;
+  struct InputArithmetic {  // of vectors of 16-bit numbers
+    TUMBLESIGHT_INLINE __m256i add(__m256i a, __m256i b) { return _mm256_add_epi16(a, b); }
+    TUMBLESIGHT_INLINE __m256i sub(__m256i a, __m256i b) { return _mm256_sub_epi16(a, b); }
+    template <int kBits>
+    TUMBLESIGHT_INLINE __m256i shift(__m256i a) {
+      return _mm256_slli_epi16(a, kBits);
+    }
+  };
+  struct WeightArithmetic {
+    TUMBLESIGHT_INLINE Vector add(Vector a, Vector b) { return Ops::add_16(a, b); }
+    TUMBLESIGHT_INLINE Vector sub(Vector a, Vector b) { return Ops::sub_16(a, b); }
+    template <int kBits>
+    TUMBLESIGHT_INLINE Vector shift(Vector a) {
+      return Ops::template shift_16<kBits>(a);
+    }
+  };
+  struct SumArithmetic {
+    TUMBLESIGHT_INLINE Vector add(Vector a, Vector b) { return Ops::add_32(a, b); }
+    TUMBLESIGHT_INLINE Vector sub(Vector a, Vector b) { return Ops::sub_32(a, b); }
+    template <int kBits>
+    TUMBLESIGHT_INLINE Vector shift(Vector a) {
+      return Ops::template shift_32<kBits>(a);
+    }
+  };
 
   // One tile and chunk. `out`: its place at the first position; `step`: pairs from one position to the next.
   TUMBLESIGHT_INLINE void transform_patch(const std::uint8_t* in, int row, int column, std::int32_t* out,
@@ -115,7 +94,7 @@ struct WinogradTiles {
       }
 #pragma GCC unroll 2
       for (int odd = 0; odd < 2; ++odd) {
-        transform_inputs(d[odd], transformed);
+        Filter::inputs<InputArithmetic>(d[odd], transformed);
 #pragma GCC unroll 6
         for (int u = 0; u < kPatch; ++u) half[odd][u][x] = transformed[u];
       }
@@ -123,7 +102,7 @@ struct WinogradTiles {
     for (int odd = 0; odd < 2; ++odd) {
       for (int u = 0; u < kPatch; ++u) {
         __m256i transformed[kPatch];
-        transform_inputs(half[odd][u], transformed);
+        Filter::inputs<InputArithmetic>(half[odd][u], transformed);
 #pragma GCC unroll 6
         for (int v = 0; v < kPatch; ++v)
           store_256(transformed[v], out + (u * kPatch + v) * step + odd * kPairs / 2);
@@ -154,13 +133,13 @@ struct WinogradTiles {
 #pragma GCC unroll 3
       for (int y = 0; y < 3; ++y)
         column[y] = Ops::template widen<kOdd>(Ops::load(weights + (y * 3 + x) * step));
-      transform_weights(column, rows[x]);
+      Filter::weights<WeightArithmetic>(column, rows[x]);
     }
 #pragma GCC unroll 6
     for (int u = 0; u < kPatch; ++u) {
       const Vector columns[3] = {rows[0][u], rows[1][u], rows[2][u]};
       Vector transformed[kPatch];
-      transform_weights(columns, transformed);
+      Filter::weights<WeightArithmetic>(columns, transformed);
 #pragma GCC unroll 6
       for (int v = 0; v < kPatch; ++v) Ops::store(transformed[v], out + (u * kPatch + v) * kPositionStep);
     }
@@ -222,14 +201,12 @@ struct WinogradTiles {
   // Sums of one vector of channels of a tile: the largest of each of its four windows, without the start.
   template <int kShift>
   TUMBLESIGHT_INLINE Vector unscaled(Vector scaled) {
-    constexpr std::int32_t kInverseOf9 = 954437177;  // modulo 2^32
-    return Ops::template divide<kShift>(Ops::multiply_32(scaled, kInverseOf9));
+    return Ops::template divide<kShift>(Ops::multiply_32(scaled, Filter::kInverseOf9));
   }
   template <int kRow, int kColumn>
   TUMBLESIGHT_INLINE Vector largest_of_window(const Vector (&top)[kTile], const Vector (&bottom)[kTile]) {
-    constexpr int kShifts[kTile] = {3, 2, 1, 1};
-    constexpr int kTop = kShifts[kRow], kBottom = kShifts[kRow + 1];
-    constexpr int kLeft = kShifts[kColumn], kRight = kShifts[kColumn + 1];
+    constexpr int kTop = Filter::kShifts[kRow], kBottom = Filter::kShifts[kRow + 1];
+    constexpr int kLeft = Filter::kShifts[kColumn], kRight = Filter::kShifts[kColumn + 1];
     return Ops::max_32(
         Ops::max_32(unscaled<kTop + kLeft>(top[kColumn]), unscaled<kTop + kRight>(top[kColumn + 1])),
         Ops::max_32(unscaled<kBottom + kLeft>(bottom[kColumn]),
@@ -242,7 +219,7 @@ struct WinogradTiles {
       Vector m[kPatch], transformed[kTile];
 #pragma GCC unroll 6
       for (int v = 0; v < kPatch; ++v) m[v] = Ops::load(scratch.sums[u * kPatch + v][tile][pack]);
-      transform_sums(m, transformed);
+      Filter::sums<SumArithmetic>(m, transformed);
 #pragma GCC unroll 4
       for (int x = 0; x < kTile; ++x) columns[x][u] = transformed[x];
     }
@@ -250,7 +227,7 @@ struct WinogradTiles {
 #pragma GCC unroll 4
     for (int x = 0; x < kTile; ++x) {
       Vector transformed[kTile];
-      transform_sums(columns[x], transformed);
+      Filter::sums<SumArithmetic>(columns[x], transformed);
 #pragma GCC unroll 4
       for (int y = 0; y < kTile; ++y) rows[y][x] = transformed[y];
     }

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "gnc/nn/kernels/winograd.hpp"
 #include "gnc/nn/lstm.hpp"
 #include "tests/unit/gnc/nn/random_values.hpp"
 
@@ -238,15 +237,16 @@ class PooledImage {
     }
   }
 
-  void expect_definition(PooledConvolution<FixedPoint>* convolution) const {
+  template <class Out>
+  void expect_definition(PooledConvolution<FixedPoint, Out>* convolution) const {
     const int side_out = shape_.side / 2;
     const int row = (side_out + 2) * shape_.channels_out;  // one pixel of each end must not be written
-    std::vector<std::uint8_t> out(static_cast<std::size_t>(side_out) * row, 77);
+    std::vector<Out> out(static_cast<std::size_t>(side_out) * row, 77);
     std::vector<std::int32_t> scratch(kPooledConvolutionScratch + 1, 123);  // whatever it contains
     convolution(shape_, in_.data(), start_.data(), weights_.data(), shift_.data(),
                 out.data() + shape_.channels_out, row, scratch.data());
     EXPECT_EQ(scratch.back(), 123);
-    EXPECT_EQ(out, by_parts(row));
+    EXPECT_EQ(out, by_parts<Out>(row));
   }
 
  private:
@@ -258,17 +258,22 @@ class PooledImage {
     }
   }
   // Product and pooling one after the other.
-  std::vector<std::uint8_t> by_parts(int row) const {
+  template <class Out>
+  std::vector<Out> by_parts(int row) const {
     const Kernels<FixedPoint>& portable = *kernels_on<FixedPoint>(InstructionSet::kPortable);
     ProductShape two_rows = convolution(2, shape_.columns(), shape_.channels_in, shape_.channels_out);
     two_rows.row_step = two_rows.strip_step = shape_.row();
-    std::vector<std::uint8_t> out(static_cast<std::size_t>(shape_.side / 2) * row, 77);
+    std::vector<Out> out(static_cast<std::size_t>(shape_.side / 2) * row, 77);
     for (int y = 0; y < shape_.side / 2; ++y) {
       const auto first = in_.begin() + 2 * y * shape_.row();
       const std::vector<std::int32_t> sums =
           by_definition<Int8Product>(two_rows, {first, first + 4 * shape_.row()}, start_, weights_);
-      portable.max_pool(sums.data(), shape_.columns(), shape_.channels_out, shift_.data(),
-                        out.data() + y * row + shape_.channels_out);
+      Out* const pooled = out.data() + y * row + shape_.channels_out;
+      if constexpr (std::is_same_v<Out, std::uint8_t>) {
+        portable.max_pool(sums.data(), shape_.columns(), shape_.channels_out, shift_.data(), pooled);
+      } else {
+        portable.average_pool(sums.data(), shape_.columns(), shape_.channels_out, shift_.data(), pooled);
+      }
     }
     return out;
   }
@@ -300,18 +305,22 @@ TEST_P(KernelsOf, FixedPointHaveTheBitsOfTheirDefinition) {
 TEST_P(KernelsOf, Float32HaveTheBitsOfTheirDefinition) {
   check<Float32>();
 }
-TEST_P(KernelsOf, ConvolveAndPoolWithTheBitsOfBothParts) {
-  const Kernels<FixedPoint>* kernels = kernels_on<FixedPoint>(GetParam());
-  if (kernels == nullptr || kernels->pooled_convolution == nullptr) GTEST_SKIP() << "has none";
+template <class Out>
+void expect_both_parts(PooledConvolution<FixedPoint, Out>* (*convolution_of)(const ImageShape&)) {
+  if (convolution_of == nullptr) GTEST_SKIP() << "has none";
   RandomValues random(12);
-  // Those of the network, then odd sides and other numbers of channels.
-  const ImageShape shapes[] = {{50, 4, 32},  {25, 32, 64}, {12, 64, 128}, {7, 4, 48},
-                               {13, 96, 32}, {16, 32, 96}, {20, 32, 32}};
+  // Those of the network; odd sides and other numbers of channels; several batches of tiles.
+  const ImageShape shapes[] = {{50, 4, 16},  {25, 16, 48},  {12, 48, 96}, {6, 96, 160}, {50, 4, 32},
+                               {25, 32, 64}, {12, 64, 128}, {7, 4, 48},   {13, 96, 32}, {16, 32, 96},
+                               {20, 32, 32}, {2, 4, 16},    {3, 8, 16},   {4, 28, 16},  {5, 12, 32},
+                               {10, 96, 16}, {22, 96, 16}};
+  int convolutions = 0;
   for (const ImageShape& shape : shapes) {
     SCOPED_TRACE(::testing::Message()
                  << shape.side << ", " << shape.channels_in << " to " << shape.channels_out);
-    PooledConvolution<FixedPoint>* const convolution = kernels->pooled_convolution(shape);
+    PooledConvolution<FixedPoint, Out>* const convolution = convolution_of(shape);
     if (convolution == nullptr) continue;
+    ++convolutions;
     PooledImage image(shape);
     image.fill_randomly(random);
     image.expect_definition(convolution);
@@ -322,17 +331,18 @@ TEST_P(KernelsOf, ConvolveAndPoolWithTheBitsOfBothParts) {
       }
     }
   }
+  EXPECT_GT(convolutions, 3);
 }
 
-// Only the portable kernels of 32-bit processors use it.
-TEST(Winograd, HasTheBitsOfTheDefinition) {
-  expect_definition_for_all_shapes<Int8Product>([](const ProductShape& shape, const std::uint8_t* in,
-                                                   const std::int32_t* start, const std::int8_t* weights,
-                                                   std::int32_t* out) {
-    const bool supported = Winograd::supports(shape);
-    (supported ? Winograd::convolve : kernels_on<FixedPoint>(InstructionSet::kPortable)->convolve)(
-        shape, in, start, weights, out);
-  });
+TEST_P(KernelsOf, ConvolveAndMaxPoolWithTheBitsOfBothParts) {
+  const Kernels<FixedPoint>* kernels = kernels_on<FixedPoint>(GetParam());
+  if (kernels == nullptr) GTEST_SKIP() << "not built, or this processor lacks it";
+  expect_both_parts(kernels->max_pooled_convolution);
+}
+TEST_P(KernelsOf, ConvolveAndAveragePoolWithTheBitsOfBothParts) {
+  const Kernels<FixedPoint>* kernels = kernels_on<FixedPoint>(GetParam());
+  if (kernels == nullptr) GTEST_SKIP() << "not built, or this processor lacks it";
+  expect_both_parts(kernels->average_pooled_convolution);
 }
 
 TEST_P(KernelsOf, UpdateTheLstmWithTheBitsOfItsDefinition) {
