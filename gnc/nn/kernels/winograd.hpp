@@ -59,7 +59,7 @@ struct WinogradImage {
   static constexpr int kTile = Filter::kTile, kPatch = Filter::kPatch, kPositions = kPatch * kPatch;
   static constexpr int kTiles = Ops::kTiles, kChannels = Ops::kChannels;
   static constexpr int kGroup = Int8Product::kGroup, kPairs = kGroup / Pair::kNumbers;
-  static constexpr int kChunk = 24;  // input channels whose weights are in memory together
+  static constexpr int kChunk = 64 / kChannels;  // input channels whose weights are in memory together
   static constexpr int kWeights = kPositions * kChannels * kChunk;
   static_assert(kChunk % kGroup == 0 && kPairs == 2 && kIntegerChannels % kChannels == 0);
 
@@ -81,8 +81,9 @@ struct WinogradImage {
            rows_of_batch(shape) > 0;
   }
 
-  // In the scratch memory: sums by position, tile and channel; weights and inputs by position, pair of input
-  // channels, output channel or tile, and number in the pair.
+  // In the scratch memory: sums by group of tiles, position, tile and channel; weights by position, pair of
+  // input channels, output channel and number in the pair; inputs by position, group of tiles, pair of input
+  // channels, tile and number in the pair.
   struct Batch {
     int first_row, tiles, groups;  // groups of kTiles tiles; the last tile fills up the last group
     std::uint32_t* sums;
@@ -174,28 +175,29 @@ struct WinogradImage {
     }
   }
 
+  static constexpr int kSumStep = kTiles * kChannels;  // from one position to the next
   // The sums of all tiles of the batch and `channels` input channels, added to those before.
   template <bool kFirst>
   [[gnu::noinline]] static void multiply(const Batch& batch, const std::int16_t* inputs, int group_step,
                                          int channels) {
     const std::int16_t* weights = batch.weights;
-    std::uint32_t* sums = batch.sums;
     for (int position = 0; position < kPositions; ++position, weights += kPositionStep) {
-      for (int g = 0; g < batch.groups; ++g, inputs += group_step, sums += kTiles * kChannels)
+      std::uint32_t* sums = batch.sums + position * kSumStep;
+      for (int g = 0; g < batch.groups; ++g, inputs += group_step, sums += kPositions * kSumStep)
         Ops::template multiply_add<kFirst>(inputs, weights, channels / Pair::kNumbers, sums);
     }
   }
 
-  // The pooled windows of one channel of a tile. `sums`: its first position, `step` numbers from each other.
+  // The pooled windows of one channel of a tile.
   template <class Pool>
-  TUMBLESIGHT_INLINE void pool_tile(const std::uint32_t* sums, int step, std::uint32_t start, int shift,
+  TUMBLESIGHT_INLINE void pool_tile(const std::uint32_t* sums, std::uint32_t start, int shift,
                                     int channels, typename Pool::Out* out, int out_row) {
     std::uint32_t half[kTile][kPatch];  // by column of sums and row of positions
 #pragma GCC unroll 6
     for (int u = 0; u < kPatch; ++u) {
       std::uint32_t m[kPatch], transformed[kTile];
 #pragma GCC unroll 6
-      for (int v = 0; v < kPatch; ++v, sums += step) m[v] = *sums;
+      for (int v = 0; v < kPatch; ++v) m[v] = sums[(u * kPatch + v) * kSumStep];
       Filter::template sums<Pair>(m, transformed);
 #pragma GCC unroll 4
       for (int x = 0; x < kTile; ++x) half[x][u] = transformed[x];
@@ -224,12 +226,13 @@ struct WinogradImage {
   [[gnu::noinline]] static void pool_tiles(const ImageShape& shape, const Batch& batch,
                                            const std::int32_t* start, const std::uint8_t* shift,
                                            typename Pool::Out* out, int out_row) {
-    const int step = batch.groups * kTiles * kChannels;
     for (int t = 0; t < batch.tiles; ++t) {
       const Place place = place_of(shape, batch, t);
       typename Pool::Out* const windows = out + place.y / 2 * out_row + place.x / 2 * shape.channels_out;
+      const int group = t / kTiles;
+      const std::uint32_t* const sums = batch.sums + group * kPositions * kSumStep + (t - group * kTiles) * kChannels;
       for (int c = 0; c < kChannels; ++c) {
-        pool_tile<Pool>(batch.sums + t * kChannels + c, step, static_cast<std::uint32_t>(start[c]), shift[c],
+        pool_tile<Pool>(sums + c, static_cast<std::uint32_t>(start[c]), shift[c],
                         shape.channels_out, windows + c, out_row);
       }
     }
