@@ -146,33 +146,40 @@ void look_at_triangles(const SurfaceMesh& mesh, const FrameView& view, const Ren
   if (!budget.spend(work::kDarkLook + mesh.triangles() * work::kDarkTriangle)) return;
   const RayCount all = all_rays(view, surface);
   const std::int32_t slope_q24 = slope_per_half_ray_q24(view);
-  visit_front(
-      mesh, view.rays, *surface.vertices, true,
-      [&](const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c, std::int32_t whole,
-          const Bounds& rows, const Bounds& columns) {
-        Counter counter(view, surface);
-        const int looked_at = visit_spans(a, b, c, whole, rows, columns, counter);
-        const int height = rows.last - rows.first + 1;
-        const int in_triangle = looked_at - height;  // rays
-        if (!budget.spend(work::kDarkFront + height * work::kDarkRow + in_triangle * work::kDarkRay))
-          return false;
-        const RayCount& rays = counter.rays();
-        if (rays.drawn == 0) return true;
-        budget.spend(work::kDarkSeen);
-        if (return_as_much(rays, all)) dark.bright.add(rays);
-        bool is_dark = are_dark(rays, bright);
-        const bool is_alone = are_enough(rays, bright);
-        if (!is_alone) {
-          budget.spend(work::kDarkAngle);
-          const std::size_t angle = counter.angle(slope_q24);
-          dark.of_angle[angle].add(rays);
-          is_dark = ((dark_angles >> angle) & 1U) != 0;
-        }
-        if (takes_out == nullptr || !is_dark) return true;
-        dark.surfaces += is_alone ? 1 : 0;
-        visit_spans(a, b, c, whole, rows, columns, Remover(*takes_out));
-        return budget.spend(work::kTakenOut + height * work::kTakenRow + in_triangle * work::kTakenRay);
-      });
+  const auto look = [&](const ScreenTriangle& triangle) {
+    Counter counter(view, surface);
+    const int covered = visit_spans(triangle, counter);  // rays
+    if (!budget.spend(work::kDarkFront + triangle.height() * work::kDarkRow + covered * work::kDarkRay))
+      return false;
+    const RayCount& rays = counter.rays();
+    if (rays.drawn == 0) return true;
+    budget.spend(work::kDarkSeen);
+    if (return_as_much(rays, all)) dark.bright.add(rays);
+    bool is_dark = are_dark(rays, bright);
+    const bool is_alone = are_enough(rays, bright);
+    if (!is_alone) {
+      budget.spend(work::kDarkAngle);
+      const std::size_t angle = counter.angle(slope_q24);
+      dark.of_angle[angle].add(rays);
+      is_dark = ((dark_angles >> angle) & 1U) != 0;
+    }
+    if (takes_out == nullptr || !is_dark) return true;
+    dark.surfaces += is_alone ? 1 : 0;
+    visit_spans(triangle, Remover(*takes_out));
+    return budget.spend(work::kTakenOut + triangle.height() * work::kTakenRow + covered * work::kTakenRay);
+  };
+  // The surface is complete: every corner is on the screen.
+  bool is_complete = true;
+  constexpr bool kAllInside = true;
+  int first = 0;
+  for (const std::uint32_t word : surface.covering.words) {
+    int i = first;
+    for (std::uint32_t covering = word; covering != 0; covering >>= 1, ++i) {
+      if ((covering & 1U) == 0) continue;
+      if (!visit_front(mesh, i, view.rays, *surface.vertices, kAllInside, is_complete, look)) return;
+    }
+    first += TriangleSet::kPerWord;
+  }
 }
 
 }  // namespace

@@ -184,16 +184,22 @@ class SilhouetteRows {
   std::int32_t slope_q30_;  // per 1/64 of a ray
 };
 
-// Adds the places where an edge crosses the middles of the lines, of `every` line one; returns the number of
-// lines. `found`: whether one was added.
-int add_edge(const SurfaceMesh& mesh, const SilhouetteEdge& edge, int every,
-             const SilhouetteRows& equation_rows, const Across& across, int rays, SilhouetteFit& fit,
-             WorkBudget& budget, bool& found) {
+// The lines whose middles an edge crosses, of `every` line one.
+struct Lines {
+  int first, end;
+  bool are_none() const { return first >= end; }
+};
+Lines lines_of(const SilhouetteEdge& edge, int every, int rays) {
   // Between the first end and before the second one: a line through both of two edges is of one of them.
-  int first = max_small(0, first_ray(edge.line(edge.from)));
-  const int end = min_small(rays, first_ray(edge.line(edge.to)));
-  first += first & (every - 1);
-  if (first >= end) return 0;
+  const int first = max_small(0, first_ray(edge.line(edge.from)));
+  return {first + (first & (every - 1)), min_small(rays, first_ray(edge.line(edge.to)))};
+}
+
+// Adds the places where an edge crosses the middles of the lines, one at least; returns the number of lines.
+// `found`: whether a place was added.
+int add_edge(const SurfaceMesh& mesh, const SilhouetteEdge& edge, const Lines& lines, int every,
+             const SilhouetteRows& equation_rows, const Across& across, SilhouetteFit& fit,
+             WorkBudget& budget, bool& found) {
   const std::int32_t length = edge.line(edge.to) - edge.line(edge.from);
   const std::int32_t aside = edge.across(edge.to) - edge.across(edge.from);
   const std::int32_t per_line_q28 = (1 << 28) / length;  // of 1/64 of a ray
@@ -216,7 +222,7 @@ int add_edge(const SurfaceMesh& mesh, const SilhouetteEdge& edge, int every,
     };
     const SurfaceMesh::Vertex from = mesh.vertex(edge.from_vertex), to = mesh.vertex(edge.to_vertex);
     SurfaceMesh::Vertex vertex{};
-    for (std::size_t k = 0; k < 3; ++k) vertex[k] = static_cast<std::int16_t>(between(from[k], to[k]));
+    for (std::size_t k = 0; k < 3; ++k) vertex[k] = between(from[k], to[k]);
     const Place place{between(edge.from.column, edge.to.column), between(edge.from.row, edge.to.row),
                       edge.is_steep ? out_across : out_along, edge.is_steep ? out_along : out_across,
                       between(edge.from.inverse_depth, edge.to.inverse_depth)};
@@ -228,7 +234,7 @@ int add_edge(const SurfaceMesh& mesh, const SilhouetteEdge& edge, int every,
     ++equations;
     found = true;
   };
-  for (int line = first; line < end; line += every) {
+  for (int line = lines.first; line < lines.end; line += every) {
     const std::int32_t past = line * kScreenRay + kScreenRay / 2 - edge.line(edge.from);
     const std::int32_t part_q15 = (past * (per_line_q28 >> 6)) >> 7;
     const std::int32_t place = edge.across(edge.from) + ((past * slope_q14 + (1 << 13)) >> 14);
@@ -243,9 +249,23 @@ int add_edge(const SurfaceMesh& mesh, const SilhouetteEdge& edge, int every,
     if (++places == kMostPerRow) add_row();
   }
   if (places > 0) add_row();
-  const int lines = (end - first + every - 1) / every;
-  budget.spend(lines * work::kPlace + looked_at * work::kAcross + equations * work::kEquation);
-  return lines;
+  const int count = (lines.end - lines.first + every - 1) / every;
+  budget.spend(count * work::kPlace + looked_at * work::kAcross + equations * work::kEquation);
+  return count;
+}
+
+const ScreenPoint& at(const ScreenVertices& vertices, std::int32_t vertex) {
+  return vertices[static_cast<std::size_t>(vertex)];
+}
+
+// Whether all corners of an edge's triangles are on the screen.
+bool is_inside(const SurfaceMesh& mesh, const RenderedSurface& surface, const SurfaceMesh::Edge& edge) {
+  // The image was sound when it was loaded, but its memory may have been damaged since.
+  if (!mesh.has(edge.first, edge.second, edge.opposite[0], edge.opposite[1])) return false;
+  if (surface.is_complete) return true;
+  const ScreenVertices& vertices = *surface.vertices;
+  return !at(vertices, edge.first).is_outside() && !at(vertices, edge.second).is_outside() &&
+         !at(vertices, edge.opposite[0]).is_outside() && !at(vertices, edge.opposite[1]).is_outside();
 }
 
 // The triangles on both sides of an edge.
@@ -254,22 +274,16 @@ struct Sides {
   bool are_on_one_side = false;  // of the edge, which parts the target from what is behind it
   bool first_is_right = false;   // on the right of the way from the edge's first end to its second
 };
-Sides sides_of(const SurfaceMesh& mesh, const RenderedSurface& surface, const SurfaceMesh::Edge& edge) {
-  // The image was sound when it was loaded, but its memory may have been damaged since.
-  if (!mesh.has(edge.first, edge.second, edge.opposite[0], edge.opposite[1])) return {};
-  const ScreenVertices& vertices = *surface.vertices;
-  const ScreenPoint &first = vertices[edge.first], &second = vertices[edge.second];
-  const ScreenPoint &left = vertices[edge.opposite[0]], &right = vertices[edge.opposite[1]];
-  if (!surface.is_complete &&
-      (first.is_outside() || second.is_outside() || left.is_outside() || right.is_outside()))
-    return {};
+Sides sides_of(const ScreenVertices& vertices, const SurfaceMesh::Edge& edge) {
+  const ScreenPoint &first = at(vertices, edge.first), &second = at(vertices, edge.second);
+  const ScreenPoint &left = at(vertices, edge.opposite[0]), &right = at(vertices, edge.opposite[1]);
   const std::int32_t left_side = area(first, second, left), right_side = area(first, second, right);
   return {left_side != 0 && right_side != 0, (left_side ^ right_side) >= 0, left_side > 0};
 }
 
 // `is_right`: the target is on the right of the way from the edge's first end to its second.
 SilhouetteEdge silhouette_edge(const ScreenVertices& vertices, const SurfaceMesh::Edge& edge, bool is_right) {
-  const ScreenPoint &first = vertices[edge.first], &second = vertices[edge.second];
+  const ScreenPoint &first = at(vertices, edge.first), &second = at(vertices, edge.second);
   const std::int32_t right_by = second.column - first.column, down_by = second.row - first.row;
   const bool is_steep = abs(down_by) >= abs(right_by);
   const bool is_forward = (is_steep ? down_by : right_by) >= 0;
@@ -311,29 +325,33 @@ void fit_silhouette(const SurfaceMesh& mesh, const FrameView& view, const Pose& 
   budget.spend(work::kSilhouette + mesh.edges() * work::kEdge);
   const Across across(view, surface, table, sigma_q8);
   const SilhouetteRows rows(view, pose);
-  const auto follow = [&](const SilhouetteEdge& edge, bool& found) {
-    return add_edge(mesh, edge, every, rows, across, view.rays, fit, budget, found);
+  const auto follow = [&](const SilhouetteEdge& edge, const Lines& lines, bool& found) {
+    return add_edge(mesh, edge, lines, every, rows, across, fit, budget, found);
   };
   int open = 0, between = 0;  // places
   for (int i = 0; i < mesh.edges() && !budget.is_exhausted(); ++i) {
     const SurfaceMesh::Edge edge = mesh.edge(i);
-    const Sides sides = sides_of(mesh, surface, edge);
+    if (!is_inside(mesh, surface, edge)) continue;
+    const Sides sides = sides_of(*surface.vertices, edge);
     // Between a dark surface and another one is a silhouette, too.
     if (!sides.are_drawn || (!sides.are_on_one_side && !surface.has_dark)) continue;
     SilhouetteEdge silhouette = silhouette_edge(*surface.vertices, edge, sides.first_is_right);
     budget.spend(work::kSilhouetteEdge);
+    // Most edges of a fine mesh cross no line.
+    const Lines lines = lines_of(silhouette, every, view.rays);
+    if (lines.are_none()) continue;
     bool found = false;
     if (!sides.are_on_one_side) {
       silhouette.outward = across.dark_side(silhouette);
-      if (silhouette.outward != 0 && between < kMaxPlaces) between += follow(silhouette, found);
+      if (silhouette.outward != 0 && between < kMaxPlaces) between += follow(silhouette, lines, found);
       continue;
     }
     if (open >= kMaxPlaces) continue;
-    open += follow(silhouette, found);
+    open += follow(silhouette, lines, found);
     if (found || !surface.has_dark) continue;
     // A dark surface before a bright one.
     silhouette.outward = -silhouette.outward;
-    open += follow(silhouette, found);
+    open += follow(silhouette, lines, found);
   }
 }
 

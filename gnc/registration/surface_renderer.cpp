@@ -86,12 +86,12 @@ void fill_row(int row, int first, int last, std::int32_t inverse_depth, const Pl
     if (here > *out) *out = static_cast<std::int16_t>(here);
   }
   RayMask::Row& filled = surface.filled.rows[static_cast<std::size_t>(row)];
-  const int first_word = first / RayMask::kColumnsPerWord, last_word = last / RayMask::kColumnsPerWord;
-  std::uint32_t from_first = ~std::uint32_t{0} >> (first % RayMask::kColumnsPerWord);
-  for (int word = first_word; word < last_word; ++word, from_first = ~std::uint32_t{0})
-    filled[static_cast<std::size_t>(word)] |= from_first;
-  filled[static_cast<std::size_t>(last_word)] |=
-      from_first & (~std::uint32_t{0} << (RayMask::kColumnsPerWord - 1 - last % RayMask::kColumnsPerWord));
+  constexpr unsigned kPerWord = RayMask::kColumnsPerWord;
+  const auto from = static_cast<unsigned>(first), to = static_cast<unsigned>(last);
+  std::uint32_t from_first = ~std::uint32_t{0} >> (from % kPerWord);
+  for (unsigned word = from / kPerWord; word < to / kPerWord; ++word, from_first = ~std::uint32_t{0})
+    filled[word] |= from_first;
+  filled[to / kPerWord] |= from_first & (~std::uint32_t{0} << (kPerWord - 1 - to % kPerWord));
 }
 
 void clear(RenderedSurface& surface) {
@@ -103,6 +103,7 @@ void clear(RenderedSurface& surface) {
     for (std::size_t i = 0; i < kAtATime; ++i) surface.inverse_depth[first + i] = RenderedSurface::kEmpty;
   surface.filled = {};
   surface.dark = {};
+  surface.covering = {};
 }
 
 }  // namespace
@@ -133,20 +134,21 @@ void render(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose, Re
     all_inside = all_inside && !point.is_outside();
   }
   int drawn = 0;
-  surface.is_complete =
-      visit_front(mesh, view.rays, vertices, all_inside,
-                  [&](const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c, std::int32_t whole,
-                      const Bounds& rows, const Bounds& columns) {
-                    if (drawn > kMostDrawn) return false;
-                    const int here = visit_spans(
-                        a, b, c, whole, rows, columns,
-                        [&](int row, int first, int last, std::int32_t inverse_depth, const Plane& plane) {
-                          fill_row(row, first, last, inverse_depth, plane, surface);
-                        });
-                    drawn += here;
-                    const int height = rows.last - rows.first + 1;
-                    return budget.spend(work::kFront + height * work::kRow + (here - height) * work::kRay);
-                  });
+  const auto draw = [&](const ScreenTriangle& triangle) {
+    if (drawn > kMostDrawn) return false;
+    const int covered = visit_spans(
+        triangle, [&](int row, int first, int last, std::int32_t inverse_depth, const Plane& plane) {
+          fill_row(row, first, last, inverse_depth, plane, surface);
+        });
+    if (covered > 0) surface.covering.add(static_cast<unsigned>(triangle.index));
+    drawn += covered + triangle.height();
+    return budget.spend(work::kFront + triangle.height() * work::kRow + covered * work::kRay);
+  };
+  for (int i = 0; i < mesh.triangles(); ++i) {
+    if (visit_front(mesh, i, view.rays, vertices, all_inside, surface.is_complete, draw)) continue;
+    surface.is_complete = false;
+    return;
+  }
 }
 
 }  // namespace tumblesight::gnc

@@ -13,6 +13,14 @@
 
 namespace tumblesight::gnc {
 
+// Some of a mesh's triangles: a bit for each.
+struct TriangleSet {
+  static constexpr unsigned kPerWord = 32;
+  std::array<std::uint32_t, SurfaceMesh::kMaxTriangles / kPerWord> words;
+
+  void add(unsigned triangle) { words[triangle / kPerWord] |= 1U << (triangle % kPerWord); }
+};
+
 struct RenderedSurface {
   static constexpr std::int16_t kEmpty = -32768;
   int rays = 0;
@@ -22,8 +30,9 @@ struct RenderedSurface {
   bool has_dark = false;               // surfaces are dark (dark_surfaces.hpp)
   ScreenVertices* vertices = nullptr;  // of the mesh; memory that the caller lends
   alignas(8) std::array<std::int16_t, RangeImage::kMaxReturns> inverse_depth;
-  RayMask filled;  // rays that are not kEmpty, and not dark
-  RayMask dark;    // rays of dark surfaces
+  RayMask filled;        // rays that are not kEmpty, and not dark
+  RayMask dark;          // rays of dark surfaces
+  TriangleSet covering;  // triangles that cover a ray, hidden or not
 
   // kEmpty outside the screen.
   std::int16_t at(int row, int column) const {

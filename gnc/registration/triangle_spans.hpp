@@ -66,20 +66,33 @@ inline Plane plane_of(const ScreenPoint& a, const ScreenPoint& b, const ScreenPo
   plane.per_row = per_ray(to_c * (b.column - a.column), to_b * (c.column - a.column));
   const std::int32_t right = columns.first * kScreenRay + kScreenRay / 2 - a.column;
   const std::int32_t down = rows.first * kScreenRay + kScreenRay / 2 - a.row;
-  constexpr std::int64_t kMost = 1 << 29;
-  const std::int64_t from_a =
-      (std::int64_t{plane.per_column} * right + std::int64_t{plane.per_row} * down) >> kScreenBits;
-  plane.at_first = a.inverse_depth * 256 + 128 + static_cast<std::int32_t>(clamp(from_a, -kMost, kMost));
+  // (per_column right + per_row down) / 64, in parts that fit into 32 bits: right and down are below 2^14.
+  constexpr std::int32_t kMost = 1 << 29, kLowBits = kScreenRay - 1;
+  const std::int32_t low = (plane.per_column & kLowBits) * right + (plane.per_row & kLowBits) * down;
+  const std::int32_t from_a = (plane.per_column >> kScreenBits) * right +
+                              (plane.per_row >> kScreenBits) * down + (low >> kScreenBits);
+  plane.at_first = a.inverse_depth * 256 + 128 + min_small(max_small(from_a, -kMost), kMost);
   plane.lowest = min_small(a.inverse_depth, min_small(b.inverse_depth, c.inverse_depth));
   plane.highest = max_small(a.inverse_depth, max_small(b.inverse_depth, c.inverse_depth));
   return plane;
 }
 
+// A triangle of the mesh that shows its front: area(a, b, c) = whole > 0, and the rows and columns of rays
+// that it may cover.
+struct ScreenTriangle {
+  int index;
+  const ScreenPoint &a, &b, &c;
+  std::int32_t whole;
+  Bounds rows, columns;
+
+  int height() const { return rows.last - rows.first + 1; }
+};
+
 // Calls visit(row, first column, last column, inverse depth at the first in 1/256, plane) for every row of a
-// triangle with area(a, b, c) = whole > 0 in which it covers a ray. Returns the work: rays and rows.
+// triangle in which it covers a ray. Returns the number of rays.
 template <class Visit>
-inline int visit_spans(const ScreenPoint& a, const ScreenPoint& b, const ScreenPoint& c, std::int32_t whole,
-                       const Bounds& rows, const Bounds& columns, Visit&& visit) {
+inline int visit_spans(const ScreenTriangle& triangle, Visit&& visit) {
+  const auto& [index, a, b, c, whole, rows, columns] = triangle;
   // The corners from top to bottom. The long edge joins the first and the last one.
   const ScreenPoint *top = &a, *middle = &b, *bottom = &c;
   bool is_long_edge_left = false;
@@ -102,8 +115,12 @@ inline int visit_spans(const ScreenPoint& a, const ScreenPoint& b, const ScreenP
                        : max_small(rows.first, min_small(rows.last, last_ray(middle->row)) + 1);
   Plane plane{};
   int covered = 0;
-  const auto fill = [&](Crossing short_edge, int from, int to) {
-    for (int row = from; row <= to; ++row) {
+  // Above the bend, then below it.
+  for (int part = 0, row = rows.first; part < 2; ++part) {
+    const int end = part == 0 ? bend : rows.last + 1;
+    if (row >= end) continue;
+    Crossing short_edge(part == 0 ? *top : *middle, part == 0 ? *middle : *bottom, row);
+    for (; row < end; ++row) {
       const std::int32_t left = is_long_edge_left ? long_edge.column() : short_edge.column();
       const std::int32_t right = is_long_edge_left ? short_edge.column() : long_edge.column();
       long_edge.next_row();
@@ -119,39 +136,35 @@ inline int visit_spans(const ScreenPoint& a, const ScreenPoint& b, const ScreenP
       visit(row, first, last, inverse_depth, plane);
       covered += last - first + 1;
     }
-  };
-  if (bend > rows.first) fill(Crossing(*top, *middle, rows.first), rows.first, bend - 1);
-  if (bend <= rows.last) fill(Crossing(*middle, *bottom, bend), bend, rows.last);
-  return covered + rows.last - rows.first + 1;
+  }
+  return covered;
 }
 
-// Calls visit(a, b, c, whole, rows, columns) for every triangle of the drawn surface's mesh that shows
-// its front and may cover a ray, with area(a, b, c) = whole > 0. It ends when `visit` gives false, and gives
-// false if that happened or a triangle has a corner that is not on the screen.
+// Calls visit(triangle) if triangle `index` of the drawn surface's mesh shows its front and may cover a ray.
+// False: `visit` gave false. `is_complete` becomes false if the triangle has a corner that is not on the
+// screen; it is not looked for if `all_inside`.
 template <class Visit>
-inline bool visit_front(const SurfaceMesh& mesh, int rays, const ScreenVertices& vertices, bool all_inside,
-                        Visit&& visit) {
-  bool is_complete = true;
-  for (int i = 0; i < mesh.triangles(); ++i) {
-    const SurfaceMesh::Triangle triangle = mesh.triangle(i);
-    // The image was sound when it was loaded, but its memory may have been damaged since.
-    if (!mesh.has(triangle[0], triangle[1], triangle[2])) continue;
-    const ScreenPoint& a = vertices[triangle[0]];
-    const ScreenPoint &b = vertices[triangle[1]], &c = vertices[triangle[2]];
-    if (!all_inside && (a.is_outside() || b.is_outside() || c.is_outside())) {
-      is_complete = false;
-      continue;
-    }
-    // Its corners run counterclockwise if it shows its front.
-    const std::int32_t whole = area(a, c, b);
-    if (whole <= 0) continue;
-    const Bounds rows = bounds(a.row, b.row, c.row, rays);
-    if (rows.is_empty()) continue;
-    const Bounds columns = bounds(a.column, b.column, c.column, rays);
-    if (columns.is_empty()) continue;
-    if (!visit(a, c, b, whole, rows, columns)) return false;
+inline bool visit_front(const SurfaceMesh& mesh, int index, int rays, const ScreenVertices& vertices,
+                        bool all_inside, bool& is_complete, Visit&& visit) {
+  const SurfaceMesh::Triangle triangle = mesh.triangle(index);
+  // The image was sound when it was loaded, but its memory may have been damaged since.
+  if (!mesh.has(triangle[0], triangle[1], triangle[2])) return true;
+  const auto vertex = [&](std::size_t corner) -> const ScreenPoint& {
+    return vertices[static_cast<std::size_t>(triangle[corner])];
+  };
+  const ScreenPoint &a = vertex(0), &b = vertex(1), &c = vertex(2);
+  if (!all_inside && (a.is_outside() || b.is_outside() || c.is_outside())) {
+    is_complete = false;
+    return true;
   }
-  return is_complete;
+  // Its corners run counterclockwise if it shows its front.
+  const std::int32_t whole = area(a, c, b);
+  if (whole <= 0) return true;
+  const Bounds rows = bounds(a.row, b.row, c.row, rays);
+  if (rows.is_empty()) return true;
+  const Bounds columns = bounds(a.column, b.column, c.column, rays);
+  if (columns.is_empty()) return true;
+  return visit(ScreenTriangle{index, a, c, b, whole, rows, columns});
 }
 
 }  // namespace tumblesight::gnc

@@ -31,11 +31,11 @@ class SurfaceMesh {
   static constexpr std::size_t kMaxBytes = kHeaderBytes + std::size_t{6} * kMaxVertices +
                                            std::size_t{6} * kMaxTriangles + std::size_t{8} * kMaxEdges;
 
-  using Vertex = std::array<std::int16_t, 3>;
-  using Triangle = std::array<std::uint16_t, 3>;
+  using Vertex = std::array<std::int32_t, 3>;
+  using Triangle = std::array<std::int32_t, 3>;
   struct Edge {
-    std::uint16_t first, second;            // its ends
-    std::array<std::uint16_t, 2> opposite;  // corners of its triangles
+    std::int32_t first, second;            // its ends
+    std::array<std::int32_t, 2> opposite;  // corners of its triangles
   };
 
   SurfaceMesh() = default;  // without triangles
@@ -79,12 +79,19 @@ class SurfaceMesh {
   }
 
  private:
-  static std::uint16_t u16(const std::uint8_t* at) {
-    return static_cast<std::uint16_t>(at[0] | (at[1] << 8));
+  static std::int32_t u16(const std::uint8_t* at) {
+    std::int32_t high = at[1];
+#if defined(__sparc__)
+    // Otherwise the compiler loads both bytes together and exchanges them, in twice as many instructions.
+    asm("" : "+r"(high));
+#endif
+    return at[0] | (high << 8);
   }
-  static std::int16_t i16(const std::uint8_t* at) { return static_cast<std::int16_t>(u16(at)); }
+  static std::int32_t i16(const std::uint8_t* at) {
+    return static_cast<std::int16_t>(u16(at));
+  }
 
-  std::uint16_t vertices_ = 0, triangles_ = 0, edges_ = 0, error_mm_ = 0;
+  std::int32_t vertices_ = 0, triangles_ = 0, edges_ = 0, error_mm_ = 0;
   const std::uint8_t* vertex_data_ = nullptr;
   const std::uint8_t* triangle_data_ = nullptr;
   const std::uint8_t* edge_data_ = nullptr;

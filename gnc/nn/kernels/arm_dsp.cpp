@@ -10,11 +10,6 @@
 namespace tumblesight::gnc::kernels {
 namespace {
 
-TUMBLESIGHT_INLINE std::uint32_t load_word(const void* from) {
-  std::uint32_t bytes;
-  std::memcpy(&bytes, from, sizeof bytes);
-  return bytes;
-}
 // Bytes 1 and 3 as 16-bit numbers. In assembly, since the compiler does not use the rotation that is part of
 // the instruction.
 TUMBLESIGHT_INLINE int16x2_t odd_signed(std::uint32_t bytes) {
@@ -25,14 +20,35 @@ TUMBLESIGHT_INLINE int16x2_t odd_signed(std::uint32_t bytes) {
 
 // Convolutions, for WinogradImage.
 struct PairsOfProducts {
-  static constexpr int kTiles = 3, kChannels = 2;
+  struct Pairs {
+    TUMBLESIGHT_INLINE std::uint32_t add(std::uint32_t a, std::uint32_t b) {
+      return static_cast<std::uint32_t>(__sadd16(static_cast<int16x2_t>(a), static_cast<int16x2_t>(b)));
+    }
+    TUMBLESIGHT_INLINE std::uint32_t sub(std::uint32_t a, std::uint32_t b) {
+      return static_cast<std::uint32_t>(__ssub16(static_cast<int16x2_t>(a), static_cast<int16x2_t>(b)));
+    }
+    template <int kBits>
+    TUMBLESIGHT_INLINE std::uint32_t shift(std::uint32_t a) {
+      for (int bit = 0; bit < kBits; ++bit) a = add(a, a);
+      return a;
+    }
+    TUMBLESIGHT_INLINE std::uint32_t load(const std::uint8_t* from, int half) {
+      return static_cast<std::uint32_t>(__uxtb16(static_cast<uint8x4_t>(load_word(from) >> (8 * half))));
+    }
+    TUMBLESIGHT_INLINE std::uint32_t load(const std::int8_t* from, int half) {
+      return static_cast<std::uint32_t>(__sxtb16(static_cast<int8x4_t>(load_word(from) >> (8 * half))));
+    }
+    TUMBLESIGHT_INLINE void store(std::uint32_t pair, std::int16_t* to) { store_word(pair, to); }
+  };
+  static constexpr int kTiles = 3, kChannels = 2, kPair = 2;
 
-  // Adds two pairs of input channels. In assembly, since the compiler loads the words one at a time and runs
-  // out of registers.
-  TUMBLESIGHT_INLINE void add_two_pairs(const std::int16_t*& in, const std::int16_t*& weights,
-                                        std::int32_t (&sum)[kTiles][kChannels]) {
+  // Adds pairs of input channels, two at a time, until `end`. In assembly, since the compiler loads the words
+  // one at a time and runs out of registers.
+  TUMBLESIGHT_INLINE void add_pairs(const std::int16_t* in, const std::int16_t* end,
+                                    const std::int16_t* weights, std::int32_t (&sum)[kTiles][kChannels]) {
     std::uint64_t weight, value;
-    asm("ldrd %[weight], %H[weight], [%[weights]], #8\n"
+    asm("1:\n"
+        "ldrd %[weight], %H[weight], [%[weights]], #8\n"
         "ldrd %[value], %H[value], [%[in]], #8\n"
         "smlad %[sum00], %[value], %[weight], %[sum00]\n"
         "smlad %[sum01], %[value], %H[weight], %[sum01]\n"
@@ -47,13 +63,15 @@ struct PairsOfProducts {
         "ldrd %[value], %H[value], [%[in]], #8\n"
         "smlad %[sum10], %[value], %[weight], %[sum10]\n"
         "smlad %[sum11], %[value], %H[weight], %[sum11]\n"
+        "cmp %[in], %[end]\n"
         "smlad %[sum20], %H[value], %[weight], %[sum20]\n"
         "smlad %[sum21], %H[value], %H[weight], %[sum21]\n"
+        "bne 1b\n"
         : [weight] "=&r"(weight), [value] "=&r"(value), [in] "+r"(in), [weights] "+r"(weights),
           [sum00] "+r"(sum[0][0]), [sum01] "+r"(sum[0][1]), [sum10] "+r"(sum[1][0]), [sum11] "+r"(sum[1][1]),
           [sum20] "+r"(sum[2][0]), [sum21] "+r"(sum[2][1])
-        :
-        : "memory");
+        : [end] "r"(end)
+        : "memory", "cc");
   }
 
   template <bool kFirst>
@@ -66,8 +84,7 @@ struct PairsOfProducts {
       for (int c = 0; c < kChannels; ++c)
         sum[t][c] = kFirst ? 0 : static_cast<std::int32_t>(sums[t * kChannels + c]);
     }
-    const std::int16_t* const end = in + count * kTiles * Pair::kNumbers;
-    while (in != end) add_two_pairs(in, weights, sum);
+    add_pairs(in, in + count * kTiles * kPair, weights, sum);
 #pragma GCC unroll 3
     for (int t = 0; t < kTiles; ++t) {
 #pragma GCC unroll 2
@@ -110,9 +127,21 @@ void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int3
               const std::int8_t* weights, std::int32_t* out) {
   Blocks<Scalar<Int8Product>>::product<1, 1, 1>(shape, in, start, weights, out);
 }
+// A dense layer in parts: the few channels whose sums are in registers together use only a part of a cache
+// line of weights, which so stays in the cache for the others.
+constexpr int kInputsOfAPart = 48;
 void multiply(const ProductShape& shape, const std::int16_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  Blocks<Int16>::product<2, 1, 4>(shape, in, start, weights, out);
+  using AllBlocks = Blocks<Int16>;
+  if (shape.rows * shape.columns * shape.strips > 1) {
+    AllBlocks::product<2, 1, 2>(shape, in, start, weights, out);
+    return;
+  }
+  ProductShape part = shape;
+  for (int first = 0; first < shape.strip_length; first += kInputsOfAPart, start = out) {
+    part.strip_length = min(kInputsOfAPart, shape.strip_length - first);
+    AllBlocks::product<2, 1, 2>(part, in + first, start, weights + first * shape.channels, out);
+  }
 }
 void max_pool(const std::int32_t* sums, int columns, int channels, const std::uint8_t* shift,
               std::uint8_t* out) {

@@ -13,7 +13,8 @@ void product(const ProductShape& shape, const typename Kind::Input* in, const ty
 
 // Without vectors, for WinogradImage.
 struct OneByOne {
-  static constexpr int kTiles = 3, kChannels = 4;
+  using Pairs = gnc::Pairs;
+  static constexpr int kTiles = 3, kChannels = 4, kPair = 2;
 
   // Each product is added after the next one is begun, so that the addition does not wait for it. The empty
   // assembly statements keep this order. Without them the compiler also runs out of registers.
@@ -21,11 +22,11 @@ struct OneByOne {
                                        std::uint32_t (&sum)[kTiles][kChannels]) {
     std::int32_t value[kTiles];
 #pragma GCC unroll 3
-    for (int t = 0; t < kTiles; ++t) value[t] = in[t * Pair::kNumbers];
+    for (int t = 0; t < kTiles; ++t) value[t] = in[t * kPair];
     std::int32_t product = 0;
 #pragma GCC unroll 4
     for (int c = 0; c < kChannels; ++c) {
-      const std::int32_t weight = weights[c * Pair::kNumbers];
+      const std::int32_t weight = weights[c * kPair];
 #pragma GCC unroll 3
       for (int t = 0; t < kTiles; ++t) {
         std::int32_t next = value[t] * weight;
@@ -50,10 +51,10 @@ struct OneByOne {
 #pragma GCC unroll 4
       for (int c = 0; c < kChannels; ++c) sum[t][c] = kFirst ? 0 : sums[t * kChannels + c];
     }
-    const std::int16_t* const end = in + count * kTiles * Pair::kNumbers;
-    for (; in != end; in += kTiles * Pair::kNumbers, weights += kChannels * Pair::kNumbers) {
+    const std::int16_t* const end = in + count * kTiles * kPair;
+    for (; in != end; in += kTiles * kPair, weights += kChannels * kPair) {
 #pragma GCC unroll 2
-      for (int n = 0; n < Pair::kNumbers; ++n) add_products(in + n, weights + n, sum);
+      for (int n = 0; n < kPair; ++n) add_products(in + n, weights + n, sum);
     }
 #pragma GCC unroll 3
     for (int t = 0; t < kTiles; ++t) {

@@ -15,18 +15,31 @@
 namespace tumblesight::gnc {
 namespace {
 
-// Two 16-bit numbers in one register: low + 2^16 high, modulo 2^32. Sums, differences and multiples of such
-// pairs are those of their numbers. A negative low number borrows from the high one until it is stored.
-struct Pair {
-  static constexpr int kNumbers = 2;
-  static constexpr std::uint32_t kLowBytes = 0x00FF00FF, kSigns = 0x00800080;
+// At a multiple of four bytes.
+TUMBLESIGHT_INLINE std::uint32_t load_word(const void* from) {
+  std::uint32_t word;
+  std::memcpy(&word, __builtin_assume_aligned(from, sizeof word), sizeof word);
+  return word;
+}
+TUMBLESIGHT_INLINE void store_word(std::uint32_t word, void* to) {
+  std::memcpy(__builtin_assume_aligned(to, sizeof word), &word, sizeof word);
+}
 
+// Arithmetic of numbers modulo 2^32, for the filters.
+struct Words32 {
   TUMBLESIGHT_INLINE std::uint32_t add(std::uint32_t a, std::uint32_t b) { return a + b; }
   TUMBLESIGHT_INLINE std::uint32_t sub(std::uint32_t a, std::uint32_t b) { return a - b; }
   template <int kBits>
   TUMBLESIGHT_INLINE std::uint32_t shift(std::uint32_t a) {
     return a << kBits;
   }
+};
+
+// The same of two 16-bit numbers in one register: low + 2^16 high, modulo 2^32. A negative low number borrows
+// from the high one until it is stored.
+struct Pairs : Words32 {
+  static constexpr std::uint32_t kLowBytes = 0x00FF00FF, kSigns = 0x00800080;
+
   // Two of four bytes at a multiple of four: the others for the other `half`, 0 or 1. Which ones they are
   // depends on the byte order of the processor.
   TUMBLESIGHT_INLINE std::uint32_t load(const std::uint8_t* from, int half) {
@@ -36,32 +49,26 @@ struct Pair {
     return (((load_word(from) >> (8 * half)) & kLowBytes) ^ kSigns) - kSigns;
   }
   TUMBLESIGHT_INLINE void store(std::uint32_t pair, std::int16_t* to) {
-    const std::uint32_t numbers = pair + ((pair & 0x8000U) << 1);
-    std::memcpy(__builtin_assume_aligned(to, sizeof numbers), &numbers, sizeof numbers);
-  }
-
- private:
-  TUMBLESIGHT_INLINE std::uint32_t load_word(const void* from) {
-    std::uint32_t word;
-    std::memcpy(&word, __builtin_assume_aligned(from, sizeof word), sizeof word);
-    return word;
+    store_word(pair + ((pair & 0x8000U) << 1), to);
   }
 };
 
 // Ops defines
+//   Pairs               the arithmetic of the transformations of inputs and weights: as Pairs above
 //   kTiles, kChannels   tiles and output channels whose sums are in registers together
 //   void multiply_add<kFirst>(const std::int16_t* inputs, const std::int16_t* weights, int count,
 //                             std::uint32_t* sums)
 //     sums[t][c] = (kFirst ? 0 : sums[t][c]) + sum over i < count and n < 2 of inputs[i][t][n] *
-//     weights[i][c][n], modulo 2^32. `count` is even
+//     weights[i][c][n], modulo 2^32. `count` is even and
+//     not 0
 template <class Ops, class Filter>
 struct WinogradImage {
   static constexpr int kTile = Filter::kTile, kPatch = Filter::kPatch, kPositions = kPatch * kPatch;
   static constexpr int kTiles = Ops::kTiles, kChannels = Ops::kChannels;
-  static constexpr int kGroup = Int8Product::kGroup, kPairs = kGroup / Pair::kNumbers;
+  static constexpr int kGroup = Int8Product::kGroup, kHalves = 2, kPair = kGroup / kHalves;
   static constexpr int kChunk = 64 / kChannels;  // input channels whose weights are in memory together
   static constexpr int kWeights = kPositions * kChannels * kChunk;
-  static_assert(kChunk % kGroup == 0 && kPairs == 2 && kIntegerChannels % kChannels == 0);
+  static_assert(kChunk % kGroup == 0 && kIntegerChannels % kChannels == 0);
 
   // Tiles of a row or column. The last one is moved back to end at the last pixel; the windows that it
   // computes a second time get the same values.
@@ -114,17 +121,17 @@ struct WinogradImage {
     for (int x = 0; x < kPatch; ++x) {
       std::uint32_t d[kPatch], transformed[kPatch];
 #pragma GCC unroll 6
-      for (int y = 0; y < kPatch; ++y) d[y] = Pair::load(in + y * row + x * column, half);
-      Filter::template inputs<Pair>(d, transformed);
+      for (int y = 0; y < kPatch; ++y) d[y] = Ops::Pairs::load(in + y * row + x * column, half);
+      Filter::template inputs<typename Ops::Pairs>(d, transformed);
 #pragma GCC unroll 6
       for (int u = 0; u < kPatch; ++u) rows[u][x] = transformed[u];
     }
 #pragma GCC unroll 6
     for (int u = 0; u < kPatch; ++u) {
       std::uint32_t transformed[kPatch];
-      Filter::template inputs<Pair>(rows[u], transformed);
+      Filter::template inputs<typename Ops::Pairs>(rows[u], transformed);
 #pragma GCC unroll 6
-      for (int v = 0; v < kPatch; ++v, out += step) Pair::store(transformed[v], out);
+      for (int v = 0; v < kPatch; ++v, out += step) Ops::Pairs::store(transformed[v], out);
     }
   }
   static void transform_inputs(const ImageShape& shape, const Batch& batch, const std::uint8_t* in) {
@@ -132,11 +139,11 @@ struct WinogradImage {
     for (int t = 0; t < batch.groups * kTiles; ++t) {
       const Place place = place_of(shape, batch, min(t, batch.tiles - 1));
       const std::uint8_t* const patch = in + place.y * shape.row() + place.x * shape.channels_in;
-      std::int16_t* const out = batch.inputs + t / kTiles * group_step + t % kTiles * Pair::kNumbers;
+      std::int16_t* const out = batch.inputs + t / kTiles * group_step + t % kTiles * kPair;
       for (int c = 0; c < shape.channels_in; c += kGroup) {
-        for (int half = 0; half < kPairs; ++half) {
+        for (int half = 0; half < kHalves; ++half) {
           transform_patch(patch + c, half, shape.row(), shape.channels_in, step,
-                          out + (c + half * Pair::kNumbers) * kTiles);
+                          out + (c + half * kPair) * kTiles);
         }
       }
     }
@@ -151,16 +158,17 @@ struct WinogradImage {
     for (int y = 0; y < 3; ++y) {
       std::uint32_t g[3];
 #pragma GCC unroll 3
-      for (int x = 0; x < 3; ++x, weights += step) g[x] = Pair::load(weights, half);
-      Filter::template weights<Pair>(g, columns[y]);
+      for (int x = 0; x < 3; ++x, weights += step) g[x] = Ops::Pairs::load(weights, half);
+      Filter::template weights<typename Ops::Pairs>(g, columns[y]);
     }
 #pragma GCC unroll 6
     for (int v = 0; v < kPatch; ++v) {
       const std::uint32_t g[3] = {columns[0][v], columns[1][v], columns[2][v]};
       std::uint32_t transformed[kPatch];
-      Filter::template weights<Pair>(g, transformed);
+      Filter::template weights<typename Ops::Pairs>(g, transformed);
 #pragma GCC unroll 6
-      for (int u = 0; u < kPatch; ++u) Pair::store(transformed[u], out + (u * kPatch + v) * kPositionStep);
+      for (int u = 0; u < kPatch; ++u)
+        Ops::Pairs::store(transformed[u], out + (u * kPatch + v) * kPositionStep);
     }
   }
   // Of `channels` input channels and kChannels output channels.
@@ -168,8 +176,8 @@ struct WinogradImage {
                                                   int channels, std::int16_t* out) {
     const int step = shape.channels_in * shape.channels_out;
     for (int first = 0; first < channels; first += kGroup, weights += shape.channels_out * kGroup) {
-      for (int half = 0; half < kPairs; ++half) {
-        for (int c = 0; c < kChannels; ++c, out += Pair::kNumbers)
+      for (int half = 0; half < kHalves; ++half) {
+        for (int c = 0; c < kChannels; ++c, out += kPair)
           transform_filter(weights + c * kGroup, half, step, out);
       }
     }
@@ -180,25 +188,27 @@ struct WinogradImage {
   template <bool kFirst>
   [[gnu::noinline]] static void multiply(const Batch& batch, const std::int16_t* inputs, int group_step,
                                          int channels) {
+    const int pairs = channels / kPair, groups_step = batch.groups * kPositions * kSumStep;
     const std::int16_t* weights = batch.weights;
     for (int position = 0; position < kPositions; ++position, weights += kPositionStep) {
       std::uint32_t* sums = batch.sums + position * kSumStep;
-      for (int g = 0; g < batch.groups; ++g, inputs += group_step, sums += kPositions * kSumStep)
-        Ops::template multiply_add<kFirst>(inputs, weights, channels / Pair::kNumbers, sums);
+      const std::uint32_t* const end = sums + groups_step;
+      for (; sums != end; sums += kPositions * kSumStep, inputs += group_step)
+        Ops::template multiply_add<kFirst>(inputs, weights, pairs, sums);
     }
   }
 
   // The pooled windows of one channel of a tile.
   template <class Pool>
-  TUMBLESIGHT_INLINE void pool_tile(const std::uint32_t* sums, std::uint32_t start, int shift,
-                                    int channels, typename Pool::Out* out, int out_row) {
+  TUMBLESIGHT_INLINE void pool_tile(const std::uint32_t* sums, std::uint32_t start, int shift, int channels,
+                                    typename Pool::Out* out, int out_row) {
     std::uint32_t half[kTile][kPatch];  // by column of sums and row of positions
 #pragma GCC unroll 6
     for (int u = 0; u < kPatch; ++u) {
       std::uint32_t m[kPatch], transformed[kTile];
 #pragma GCC unroll 6
       for (int v = 0; v < kPatch; ++v) m[v] = sums[(u * kPatch + v) * kSumStep];
-      Filter::template sums<Pair>(m, transformed);
+      Filter::template sums<Words32>(m, transformed);
 #pragma GCC unroll 4
       for (int x = 0; x < kTile; ++x) half[x][u] = transformed[x];
     }
@@ -206,7 +216,7 @@ struct WinogradImage {
 #pragma GCC unroll 4
     for (int x = 0; x < kTile; ++x) {
       std::uint32_t transformed[kTile];
-      Filter::template sums<Pair>(half[x], transformed);
+      Filter::template sums<Words32>(half[x], transformed);
 #pragma GCC unroll 4
       for (int y = 0; y < kTile; ++y)
         tile[y][x] = static_cast<std::int32_t>(
@@ -230,10 +240,11 @@ struct WinogradImage {
       const Place place = place_of(shape, batch, t);
       typename Pool::Out* const windows = out + place.y / 2 * out_row + place.x / 2 * shape.channels_out;
       const int group = t / kTiles;
-      const std::uint32_t* const sums = batch.sums + group * kPositions * kSumStep + (t - group * kTiles) * kChannels;
+      const std::uint32_t* const sums =
+          batch.sums + group * kPositions * kSumStep + (t - group * kTiles) * kChannels;
       for (int c = 0; c < kChannels; ++c) {
-        pool_tile<Pool>(sums + c, static_cast<std::uint32_t>(start[c]), shift[c],
-                        shape.channels_out, windows + c, out_row);
+        pool_tile<Pool>(sums + c, static_cast<std::uint32_t>(start[c]), shift[c], shape.channels_out,
+                        windows + c, out_row);
       }
     }
   }

@@ -422,7 +422,7 @@ TEST(SurfaceRenderer, TurnedVertexIsRotatedWithinTwoUnits) {
   for (int i = 0; i < trials(1000); ++i) {
     const Pose pose = fixed({random.rotation(), {}});
     SurfaceMesh::Vertex vertex{};
-    for (std::int16_t& number : vertex) number = static_cast<std::int16_t>(random.below(65'535) - 32'767);
+    for (std::int32_t& number : vertex) number = static_cast<std::int32_t>(random.below(65'535)) - 32'767;
     const Eigen::Vector3d exact_arm =
         exact(pose).r_lrf_trf * Eigen::Vector3d(vertex[0], vertex[1], vertex[2]);
     const Arm arm = Turn(pose.r_lrf_trf)(vertex);

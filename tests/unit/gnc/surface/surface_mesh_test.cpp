@@ -68,10 +68,10 @@ TEST(SurfaceMesh, ReadsEveryNumberOfASection) {
   const SurfaceMesh::Edge shared = mesh.edge(0), last = mesh.edge(4);
   EXPECT_EQ(shared.first, 1);
   EXPECT_EQ(shared.second, 2);
-  EXPECT_EQ(shared.opposite, (std::array<std::uint16_t, 2>{0, 3}));
+  EXPECT_EQ(shared.opposite, (std::array<std::int32_t, 2>{0, 3}));
   EXPECT_EQ(last.first, 2);
   EXPECT_EQ(last.second, 3);
-  EXPECT_EQ(last.opposite, (std::array<std::uint16_t, 2>{1, 1}));
+  EXPECT_EQ(last.opposite, (std::array<std::int32_t, 2>{1, 1}));
 }
 
 TEST(SurfaceMesh, SectionOfAnyShorterSizeIsUnsound) {
