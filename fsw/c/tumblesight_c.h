@@ -14,7 +14,7 @@
  * package.
  *
  * Nothing is allocated, nothing blocks, and no function keeps a pointer into `inputs`. Call all functions of
- * one object from one thread, which needs 8 KiB of stack. Several objects are independent of each other.
+ * one object from one thread, which needs 10 KiB of stack. Several objects are independent of each other.
  *
  * Frames: the target's (TRF), the LiDAR's (LRF: x right, y boresight, z up). Quaternions: Hamilton, scalar
  * first, Q30. Times: nanoseconds of the platform's clock, which must not go back. docs/icd.md explains every
@@ -32,9 +32,9 @@ extern "C" {
 
 /* Enough for the object on every processor, at any address. */
 #if defined(__x86_64__)
-#define TUMBLESIGHT_MEMORY_BYTES (376 * 1024)
+#define TUMBLESIGHT_MEMORY_BYTES (424 * 1024)
 #else
-#define TUMBLESIGHT_MEMORY_BYTES (210 * 1024)
+#define TUMBLESIGHT_MEMORY_BYTES (258 * 1024)
 #endif
 
 #define TUMBLESIGHT_PERIOD_NS 2700000000LL

@@ -43,7 +43,7 @@ inline constexpr std::int64_t kFramePeriod_ns = 2'700'000'000;
 
 // Static memory of AttitudeInitApp in fixed point. It does not include the weights, which are read from the
 // model image in place, nor gnc::kKernelScratchBytes, which are 0 except on x86.
-inline constexpr std::size_t kMaxAppBytes = 128U * 1024U;
+inline constexpr std::size_t kMaxAppBytes = 176U * 1024U;
 inline constexpr std::size_t kMaxModelImageBytes = 8U * 1024U * 1024U;
 
 }  // namespace config

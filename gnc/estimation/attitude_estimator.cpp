@@ -11,7 +11,7 @@
 
 namespace tumblesight::gnc {
 
-static_assert(sizeof(AttitudeEstimator<FixedPoint>) <= 128 * 1024 + kKernelScratchBytes,
+static_assert(sizeof(AttitudeEstimator<FixedPoint>) <= 144 * 1024 + kKernelScratchBytes,
               "working memory exceeds its budget");
 static_assert(kModelImageSize<FixedPoint> <= 1'500'000, "the model image exceeds its budget");
 

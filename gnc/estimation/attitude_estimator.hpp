@@ -56,7 +56,7 @@ struct PropagatedMotion {
 };
 
 // Owns the activations, the state and float32 weights. Fixed-point weights are read in place from the model
-// image, which must stay valid and unchanged at its address. No allocation. Up to 128 KiB: place it in static
+// image, which must stay valid and unchanged at its address. No allocation. Up to 144 KiB: place it in static
 // storage.
 template <class N>
 class AttitudeEstimator {

@@ -1,4 +1,5 @@
-// ConvBlock: 3x3 convolution, 2x2 pooling and ReLU over a square HWC image, in one pass over pairs of rows.
+// ConvBlock: 3x3 convolution, 2x2 pooling and ReLU over a square HWC image, by one kernel for the whole image
+// or in one pass over pairs of rows.
 //
 // The functions of the layers, here and in dense.hpp and lstm.hpp, are [[gnu::noinline]], so that the audit
 // can count the instructions of each layer (tests/audit).

@@ -168,15 +168,13 @@ void look_at_triangles(const SurfaceMesh& mesh, const FrameView& view, const Ren
     visit_spans(triangle, Remover(*takes_out));
     return budget.spend(work::kTakenOut + triangle.height() * work::kTakenRow + covered * work::kTakenRay);
   };
-  // The surface is complete: every corner is on the screen.
-  bool is_complete = true;
-  constexpr bool kAllInside = true;
   int first = 0;
   for (const std::uint32_t word : surface.covering.words) {
     int i = first;
-    for (std::uint32_t covering = word; covering != 0; covering >>= 1, ++i) {
+    for (std::uint32_t covering = word; covering != 0 && i < mesh.triangles(); covering >>= 1, ++i) {
       if ((covering & 1U) == 0) continue;
-      if (!visit_front(mesh, i, view.rays, *surface.vertices, kAllInside, is_complete, look)) return;
+      // All corners are on the screen, unless memory has been damaged since the triangle was drawn.
+      if (visit_front(mesh, i, view.rays, *surface.vertices, false, look) == Visited::kStop) return;
     }
     first += TriangleSet::kPerWord;
   }

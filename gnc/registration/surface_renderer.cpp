@@ -145,9 +145,10 @@ void render(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose, Re
     return budget.spend(work::kFront + triangle.height() * work::kRow + covered * work::kRay);
   };
   for (int i = 0; i < mesh.triangles(); ++i) {
-    if (visit_front(mesh, i, view.rays, vertices, all_inside, surface.is_complete, draw)) continue;
+    const Visited visited = visit_front(mesh, i, view.rays, vertices, all_inside, draw);
+    if (visited == Visited::kGoOn) continue;
     surface.is_complete = false;
-    return;
+    if (visited == Visited::kStop) return;
   }
 }
 

@@ -16,6 +16,7 @@ namespace tumblesight::gnc {
 // Some of a mesh's triangles: a bit for each.
 struct TriangleSet {
   static constexpr unsigned kPerWord = 32;
+  static_assert(SurfaceMesh::kMaxTriangles % kPerWord == 0);
   std::array<std::uint32_t, SurfaceMesh::kMaxTriangles / kPerWord> words;
 
   void add(unsigned triangle) { words[triangle / kPerWord] |= 1U << (triangle % kPerWord); }

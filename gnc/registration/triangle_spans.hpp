@@ -141,30 +141,28 @@ inline int visit_spans(const ScreenTriangle& triangle, Visit&& visit) {
 }
 
 // Calls visit(triangle) if triangle `index` of the drawn surface's mesh shows its front and may cover a ray.
-// False: `visit` gave false. `is_complete` becomes false if the triangle has a corner that is not on the
-// screen; it is not looked for if `all_inside`.
+// kOutside: it has a corner that is not on the screen, which is not looked for if `all_inside`. kStop:
+// `visit` gave false.
+enum class Visited { kGoOn, kOutside, kStop };
 template <class Visit>
-inline bool visit_front(const SurfaceMesh& mesh, int index, int rays, const ScreenVertices& vertices,
-                        bool all_inside, bool& is_complete, Visit&& visit) {
+inline Visited visit_front(const SurfaceMesh& mesh, int index, int rays, const ScreenVertices& vertices,
+                           bool all_inside, Visit&& visit) {
   const SurfaceMesh::Triangle triangle = mesh.triangle(index);
   // The image was sound when it was loaded, but its memory may have been damaged since.
-  if (!mesh.has(triangle[0], triangle[1], triangle[2])) return true;
+  if (!mesh.has(triangle[0], triangle[1], triangle[2])) return Visited::kGoOn;
   const auto vertex = [&](std::size_t corner) -> const ScreenPoint& {
     return vertices[static_cast<std::size_t>(triangle[corner])];
   };
   const ScreenPoint &a = vertex(0), &b = vertex(1), &c = vertex(2);
-  if (!all_inside && (a.is_outside() || b.is_outside() || c.is_outside())) {
-    is_complete = false;
-    return true;
-  }
+  if (!all_inside && (a.is_outside() || b.is_outside() || c.is_outside())) return Visited::kOutside;
   // Its corners run counterclockwise if it shows its front.
   const std::int32_t whole = area(a, c, b);
-  if (whole <= 0) return true;
+  if (whole <= 0) return Visited::kGoOn;
   const Bounds rows = bounds(a.row, b.row, c.row, rays);
-  if (rows.is_empty()) return true;
+  if (rows.is_empty()) return Visited::kGoOn;
   const Bounds columns = bounds(a.column, b.column, c.column, rays);
-  if (columns.is_empty()) return true;
-  return visit(ScreenTriangle{index, a, c, b, whole, rows, columns});
+  if (columns.is_empty()) return Visited::kGoOn;
+  return visit(ScreenTriangle{index, a, c, b, whole, rows, columns}) ? Visited::kGoOn : Visited::kStop;
 }
 
 }  // namespace tumblesight::gnc

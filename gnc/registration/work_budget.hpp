@@ -19,8 +19,9 @@ namespace work {
 // rays.
 inline constexpr std::int32_t kDrawing = 45'000, kVertex = 125, kTriangle = 125, kFront = 495, kRow = 74,
                               kRay = 15;
-// A search for dark surfaces: the same, and per triangle that is the nearest at a ray, per one of them that
-// is judged by its angle of incidence, per triangle that is taken out and its rows and rays.
+// A search for dark surfaces: once, per triangle of the mesh, per one that covers a ray, per its rows and
+// rays, per one that is the nearest at a ray, per one of them that is judged by its angle of incidence, per
+// triangle that is taken out and its rows and rays.
 inline constexpr std::int32_t kDarkLook = 50'000, kDarkTriangle = 130, kDarkFront = 360, kDarkRow = 85,
                               kDarkRay = 40, kDarkSeen = 300, kDarkAngle = 400, kTakenOut = 260,
                               kTakenRow = 122, kTakenRay = 20;

@@ -21,7 +21,7 @@ IMAGE = ROOT / "fsw/models/near_shoemaker.tsm"
 LONGEST_STEPS = "flight_worst_step"  # in fixed point
 CFS_APP = "cfs_app"  # needs an operating system
 # Verifies TS-MEM-030, TS-MEM-060.
-BUDGETS = {"ram": 192 * 1024, "stack": 6656, "text": 224 * 1024, "read_only": 24 * 1024}
+BUDGETS = {"ram": 240 * 1024, "stack": 8 * 1024, "text": 288 * 1024, "read_only": 32 * 1024}
 
 
 def programs(processor):

@@ -73,14 +73,14 @@ class Processor:
 
 # Verifies TS-TIM-010, TS-TIM-020, TS-TIM-030, TS-TIM-040.
 ALL = (
-    Processor("cortex-a53", 1200, "Zynq UltraScale+", 45, (Limit(aarch64.A53, 0.10, 0.20),)),
-    Processor("cortex-a9", 667, "Zynq-7000", 65, (Limit(arm.A9, 0.10, 0.20),)),
-    Processor("rv64gc", 600, "PolarFire SoC", 135, (Limit(riscv.U54, 0.10, 0.30),)),
-    Processor("ppc750", 133, "RAD750", 135, (Limit(powerpc.PPC750, 0.40, 0.75),)),
-    Processor("cortex-m7", 100, "SAMRH71", 80, (Limit(arm.M7_TIGHTLY_COUPLED, 0.25, 0.60), Limit(arm.M7_CACHED, 0.25, 0.60))),
-    Processor("cortex-r5f", 500, "Zynq UltraScale+", 80, (Limit(arm.R5F, 0.10, 0.20),)),
-    Processor("rv64", 600, "PolarFire SoC", 135, (Limit(riscv.U54, 0.10, 0.30),)),
-    Processor("leon3", 100, "GR712RC class", 135, (Limit(sparc.SLOW, 0.60, 0.95), Limit(sparc.FAST, 0.45, 0.75))),
+    Processor("cortex-a53", 1200, "Zynq UltraScale+", 45, (Limit(aarch64.A53, 0.05, 0.10),)),
+    Processor("cortex-a9", 667, "Zynq-7000", 65, (Limit(arm.A9, 0.05, 0.15),)),
+    Processor("rv64gc", 600, "PolarFire SoC", 80, (Limit(riscv.U54, 0.10, 0.20),)),
+    Processor("ppc750", 133, "RAD750", 80, (Limit(powerpc.PPC750, 0.25, 0.50),)),
+    Processor("cortex-m7", 100, "SAMRH71", 41, (Limit(arm.M7_TIGHTLY_COUPLED, 0.20, 0.45), Limit(arm.M7_CACHED, 0.20, 0.45))),
+    Processor("cortex-r5f", 500, "Zynq UltraScale+", 45, (Limit(arm.R5F, 0.05, 0.15),)),
+    Processor("rv64", 600, "PolarFire SoC", 80, (Limit(riscv.U54, 0.10, 0.20),)),
+    Processor("leon3", 100, "GR712RC class", 80, (Limit(sparc.SLOW, 0.45, 0.80), Limit(sparc.FAST, 0.35, 0.65))),
 )
 
 

@@ -1,8 +1,6 @@
 // Arm's DSP instructions for Cortex-M and Cortex-R: SMLAD adds two 16-bit products to a sum.
 #include <arm_acle.h>
 
-#include <cstring>
-
 #include "gnc/nn/kernels/scalar.hpp"
 #include "gnc/nn/kernels/sets.hpp"
 #include "gnc/nn/kernels/winograd.hpp"
@@ -43,7 +41,8 @@ struct PairsOfProducts {
   static constexpr int kTiles = 3, kChannels = 2, kPair = 2;
 
   // Adds pairs of input channels, two at a time, until `end`. In assembly, since the compiler loads the words
-  // one at a time and runs out of registers.
+  // one at a time and runs out of registers. It needs all 13 of Thumb, so it does not compile with a frame
+  // pointer.
   TUMBLESIGHT_INLINE void add_pairs(const std::int16_t* in, const std::int16_t* end,
                                     const std::int16_t* weights, std::int32_t (&sum)[kTiles][kChannels]) {
     std::uint64_t weight, value;
@@ -67,9 +66,9 @@ struct PairsOfProducts {
         "smlad %[sum20], %H[value], %[weight], %[sum20]\n"
         "smlad %[sum21], %H[value], %H[weight], %[sum21]\n"
         "bne 1b\n"
-        : [weight] "=&r"(weight), [value] "=&r"(value), [in] "+r"(in), [weights] "+r"(weights),
-          [sum00] "+r"(sum[0][0]), [sum01] "+r"(sum[0][1]), [sum10] "+r"(sum[1][0]), [sum11] "+r"(sum[1][1]),
-          [sum20] "+r"(sum[2][0]), [sum21] "+r"(sum[2][1])
+        : [weight] "=&r"(weight), [value] "=&r"(value), [in] "+&r"(in), [weights] "+&r"(weights),
+          [sum00] "+&r"(sum[0][0]), [sum01] "+&r"(sum[0][1]), [sum10] "+&r"(sum[1][0]),
+          [sum11] "+&r"(sum[1][1]), [sum20] "+&r"(sum[2][0]), [sum21] "+&r"(sum[2][1])
         : [end] "r"(end)
         : "memory", "cc");
   }
@@ -123,6 +122,7 @@ struct Int16 {
   }
 };
 
+// Only for shapes without a pooled convolution.
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
   Blocks<Scalar<Int8Product>>::product<1, 1, 1>(shape, in, start, weights, out);

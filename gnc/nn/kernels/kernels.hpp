@@ -35,14 +35,15 @@ struct ImageShape {
   constexpr int row() const { return (side + 2) * channels_in; }
 };
 
-// Memory that a pooled convolution may use, in numbers of 32 bits. Elsewhere than on x86 it fits into what
-// the registration needs at another time (WorkingMemory).
+// Memory that a pooled convolution may use, in numbers of 32 bits, and what the memory budgets allow for it
+// in addition: nothing on onboard processors, where it shares the memory of the registration (WorkingMemory).
 #if defined(__x86_64__)
 inline constexpr int kPooledConvolutionScratch = 50 * 1024;
+inline constexpr std::size_t kKernelScratchBytes = kPooledConvolutionScratch * sizeof(std::int32_t);
 #else
 inline constexpr int kPooledConvolutionScratch = 8 * 1024;
+inline constexpr std::size_t kKernelScratchBytes = 0;
 #endif
-inline constexpr std::size_t kKernelScratchBytes = kPooledConvolutionScratch * sizeof(std::int32_t);
 
 // 3x3 convolution of a whole image and pooling as by MaxPool or AveragePool, without storing all sums.
 //

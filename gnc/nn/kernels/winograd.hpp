@@ -59,8 +59,8 @@ struct Pairs : Words32 {
 //   void multiply_add<kFirst>(const std::int16_t* inputs, const std::int16_t* weights, int count,
 //                             std::uint32_t* sums)
 //     sums[t][c] = (kFirst ? 0 : sums[t][c]) + sum over i < count and n < 2 of inputs[i][t][n] *
-//     weights[i][c][n], modulo 2^32. `count` is even and
-//     not 0
+//     weights[i][c][n], modulo 2^32. `count` is even and not 0, and both pointers are multiples of
+//     four bytes
 template <class Ops, class Filter>
 struct WinogradImage {
   static constexpr int kTile = Filter::kTile, kPatch = Filter::kPatch, kPositions = kPatch * kPatch;
@@ -100,6 +100,7 @@ struct WinogradImage {
         : first_row(row),
           tiles(min(rows_of_batch(shape), tiles_of_row(shape) - row) * tiles_of_row(shape)),
           groups((tiles + kTiles - 1) / kTiles),
+          // The 16-bit numbers are written as bytes (store_word), and no sum is written where they lie.
           sums(reinterpret_cast<std::uint32_t*>(scratch)),
           weights(reinterpret_cast<std::int16_t*>(scratch + kPositions * groups * kTiles * kChannels)),
           inputs(weights + kWeights) {}
@@ -134,7 +135,8 @@ struct WinogradImage {
       for (int v = 0; v < kPatch; ++v, out += step) Ops::Pairs::store(transformed[v], out);
     }
   }
-  static void transform_inputs(const ImageShape& shape, const Batch& batch, const std::uint8_t* in) {
+  [[gnu::noinline]] static void transform_inputs(const ImageShape& shape, const Batch& batch,
+                                                 const std::uint8_t* in) {
     const int group_step = shape.channels_in * kTiles, step = batch.groups * group_step;
     for (int t = 0; t < batch.groups * kTiles; ++t) {
       const Place place = place_of(shape, batch, min(t, batch.tiles - 1));

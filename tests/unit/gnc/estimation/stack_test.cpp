@@ -15,7 +15,7 @@
 namespace tumblesight::gnc {
 namespace {
 
-constexpr std::size_t kBudget_bytes = 6 * 1024;
+constexpr std::size_t kBudget_bytes = 8 * 1024;
 constexpr std::size_t kStack_bytes = 256 * 1024;
 constexpr std::uint8_t kUntouched = 0xA5;
 

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "gnc/nn/lstm.hpp"
@@ -223,6 +224,20 @@ class PooledImage {
     for (int c = 0; c < shape.channels_out; ++c) shift_[c] = static_cast<std::uint8_t>(8 + c % 10);
   }
 
+  // The largest transformed input of F(4x4, 3x3), 17340, in the first tile (winograd_filters.hpp); weights of
+  // one sign.
+  void fill_with_largest_transformed(int sign) {
+    constexpr std::array<int, 6> kRow{0, -4, -4, 1, 1, 0};  // of B'
+    const auto factor = [&](int at) { return at < 6 ? kRow[static_cast<std::size_t>(at)] : 0; };
+    int value = 0;
+    fill_image([&] {
+      const int pixel = value++ / shape_.channels_in;
+      const int y = pixel / shape_.side + 1, x = pixel % shape_.side + 1;  // the border comes first
+      return static_cast<std::uint8_t>(factor(y) * factor(x) > 0 ? 255 : 0);
+    });
+    std::fill(weights_.begin(), weights_.end(), static_cast<std::int8_t>(127 * sign));
+  }
+
   void fill_randomly(RandomValues& random) {
     fill_image([&random] { return random.next<std::uint8_t>(); });
     random.fill(weights_);
@@ -329,9 +344,21 @@ void expect_both_parts(PooledConvolution<FixedPoint, Out>* (*convolution_of)(con
         image.fill_with_largest(sign, every_third);
         image.expect_definition(convolution);
       }
+      image.fill_with_largest_transformed(sign);
+      image.expect_definition(convolution);
     }
   }
   EXPECT_GT(convolutions, 3);
+}
+
+// Without vectors every convolution of the network is one operation.
+TEST_P(KernelsOf, WithoutVectorsDoWholeConvolutions) {
+  const Kernels<FixedPoint>* kernels = kernels_on<FixedPoint>(GetParam());
+  const bool has_vectors = GetParam() != InstructionSet::kPortable && GetParam() != InstructionSet::kDsp;
+  if (kernels == nullptr || has_vectors) GTEST_SKIP() << "not built, or with vectors";
+  for (const ImageShape& shape : {ImageShape{50, 4, 16}, ImageShape{25, 16, 48}, ImageShape{12, 48, 96}})
+    EXPECT_NE(kernels->max_pooled_convolution(shape), nullptr) << shape.side;
+  EXPECT_NE(kernels->average_pooled_convolution({6, 96, 160}), nullptr);
 }
 
 TEST_P(KernelsOf, ConvolveAndMaxPoolWithTheBitsOfBothParts) {
