@@ -10,6 +10,11 @@ void product(const ProductShape& shape, const typename Kind::Input* in, const ty
              const typename Kind::Weight* weights, typename Kind::Sum* out) {
   Blocks<Scalar<Kind>>::template product<2, 4, 8>(shape, in, start, weights, out);
 }
+// Only for shapes without a pooled convolution.
+void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
+              const std::int8_t* weights, std::int32_t* out) {
+  Blocks<Scalar<Int8Product>>::product<1, 1, 1>(shape, in, start, weights, out);
+}
 
 // Without vectors, for WinogradImage.
 struct OneByOne {
@@ -77,8 +82,8 @@ void average_pool(const Sum<N>* sums, int columns, int channels, const std::uint
 }  // namespace
 
 const Kernels<FixedPoint> kFixedPortable{InstructionSet::kPortable,
-                                         2,
-                                         product<Int8Product>,
+                                         1,
+                                         convolve,
                                          product<Int16Product>,
                                          max_pool<FixedPoint>,
                                          average_pool<FixedPoint>,

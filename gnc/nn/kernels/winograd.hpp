@@ -264,8 +264,12 @@ struct WinogradImage {
           const int channels = min(kChunk, shape.channels_in - chunk);
           transform_filters(shape, weights + chunk * shape.channels_out + c * kGroup, channels,
                             batch.weights);
-          (chunk == 0 ? multiply<true> : multiply<false>)(batch, batch.inputs + chunk * kTiles, group_step,
-                                                          channels);
+          const std::int16_t* const inputs = batch.inputs + chunk * kTiles;
+          if (chunk == 0) {
+            multiply<true>(batch, inputs, group_step, channels);
+          } else {
+            multiply<false>(batch, inputs, group_step, channels);
+          }
         }
         pool_tiles<Pool>(shape, batch, start + c, shift + c, out + c, out_row);
       }
