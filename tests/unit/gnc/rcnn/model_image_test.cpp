@@ -350,7 +350,7 @@ TEST(FixedPointImage, EndsInTheMeshOfTheTarget) {
   EXPECT_EQ(mesh.vertex(3), (SurfaceMesh::Vertex{-10000, -20000, -10000}));
   EXPECT_EQ(mesh.triangle(3), (SurfaceMesh::Triangle{1, 3, 2}));
   EXPECT_EQ(mesh.edge(5).first, 2);
-  EXPECT_EQ(mesh.edge(5).opposite, (std::array<std::uint16_t, 2>{0, 1}));
+  EXPECT_EQ(mesh.edge(5).opposite, (std::array<std::int32_t, 2>{0, 1}));
 }
 
 // Verifies TS-IFC-040.
