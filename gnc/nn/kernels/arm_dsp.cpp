@@ -125,7 +125,7 @@ struct Int16 {
 // Only for shapes without a pooled convolution.
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  Blocks<Scalar<Int8Product>>::product<1, 1, 1>(shape, in, start, weights, out);
+  Blocks<Scalar<Int8Product>>::all_channels<1, 1>(shape, in, start, weights, out);
 }
 // A dense layer in parts: the few channels whose sums are in registers together use only a part of a cache
 // line of weights, which so stays in the cache for the others.

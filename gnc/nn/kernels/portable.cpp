@@ -13,7 +13,7 @@ void product(const ProductShape& shape, const typename Kind::Input* in, const ty
 // Only for shapes without a pooled convolution.
 void convolve(const ProductShape& shape, const std::uint8_t* in, const std::int32_t* start,
               const std::int8_t* weights, std::int32_t* out) {
-  Blocks<Scalar<Int8Product>>::product<1, 1, 1>(shape, in, start, weights, out);
+  Blocks<Scalar<Int8Product>>::all_channels<1, 1>(shape, in, start, weights, out);
 }
 
 // Without vectors, for WinogradImage.
