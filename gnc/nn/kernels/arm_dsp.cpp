@@ -18,6 +18,7 @@ TUMBLESIGHT_INLINE int16x2_t odd_signed(std::uint32_t bytes) {
 
 // Convolutions, for WinogradImage.
 struct PairsOfProducts {
+  // The two numbers of a register do not borrow from each other.
   struct Pairs {
     TUMBLESIGHT_INLINE std::uint32_t add(std::uint32_t a, std::uint32_t b) {
       return static_cast<std::uint32_t>(__sadd16(static_cast<int16x2_t>(a), static_cast<int16x2_t>(b)));
@@ -41,7 +42,7 @@ struct PairsOfProducts {
   static constexpr int kTiles = 3, kChannels = 2, kPair = 2;
 
   // Adds pairs of input channels, two at a time, until `end`. In assembly, since the compiler loads the words
-  // one at a time and runs out of registers. It needs all 13 of Thumb, so it does not compile with a frame
+  // one at a time and runs out of registers. It needs all 13 of them, so it does not compile with a frame
   // pointer.
   TUMBLESIGHT_INLINE void add_pairs(const std::int16_t* in, const std::int16_t* end,
                                     const std::int16_t* weights, std::int32_t (&sum)[kTiles][kChannels]) {

@@ -40,8 +40,8 @@ struct Words32 {
 struct Pairs : Words32 {
   static constexpr std::uint32_t kLowBytes = 0x00FF00FF, kSigns = 0x00800080;
 
-  // Two of four bytes at a multiple of four: the others for the other `half`, 0 or 1. Which ones they are
-  // depends on the byte order of the processor.
+  // Two of four bytes at a multiple of four: `half` 0 gives two of them, 1 the other two. Which ones depends
+  // on the byte order of the processor.
   TUMBLESIGHT_INLINE std::uint32_t load(const std::uint8_t* from, int half) {
     return (load_word(from) >> (8 * half)) & kLowBytes;
   }
@@ -54,7 +54,7 @@ struct Pairs : Words32 {
 };
 
 // Ops defines
-//   Pairs               the arithmetic of the transformations of inputs and weights: as Pairs above
+//   Pairs               arithmetic for inputs and weights, with the functions of Pairs above
 //   kTiles, kChannels   tiles and output channels whose sums are in registers together
 //   void multiply_add<kFirst>(const std::int16_t* inputs, const std::int16_t* weights, int count,
 //                             std::uint32_t* sums)
@@ -90,7 +90,8 @@ struct WinogradImage {
 
   // In the scratch memory: sums by group of tiles, position, tile and channel; weights by position, pair of
   // input channels, output channel and number in the pair; inputs by position, group of tiles, pair of input
-  // channels, tile and number in the pair.
+  // channels, tile and number in the pair. The 16-bit numbers are written as bytes (store_word), and no sum
+  // lies where they do.
   struct Batch {
     int first_row, tiles, groups;  // groups of kTiles tiles; the last tile fills up the last group
     std::uint32_t* sums;
@@ -100,7 +101,6 @@ struct WinogradImage {
         : first_row(row),
           tiles(min(rows_of_batch(shape), tiles_of_row(shape) - row) * tiles_of_row(shape)),
           groups((tiles + kTiles - 1) / kTiles),
-          // The 16-bit numbers are written as bytes (store_word), and no sum is written where they lie.
           sums(reinterpret_cast<std::uint32_t*>(scratch)),
           weights(reinterpret_cast<std::int16_t*>(scratch + kPositions * groups * kTiles * kChannels)),
           inputs(weights + kWeights) {}
