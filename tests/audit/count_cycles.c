@@ -40,6 +40,7 @@ void qemu_plugin_register_vcpu_mem_cb(struct qemu_plugin_insn* insn,
                                       void (*callback)(unsigned, qemu_plugin_meminfo_t, uint64_t, void*),
                                       int flags, int access, void* data);
 int qemu_plugin_mem_is_store(qemu_plugin_meminfo_t info);
+unsigned qemu_plugin_mem_size_shift(qemu_plugin_meminfo_t info);
 void qemu_plugin_register_atexit_cb(qemu_plugin_id_t id, void (*callback)(qemu_plugin_id_t, void*),
                                     void* data);
 
@@ -124,11 +125,24 @@ static int touch(Cache* cache, uint64_t line, int allocate) {
   return hit;
 }
 
+/* The write buffer holds one store. Until it is empty the next store waits, and a fetch or load that misses.
+ */
+static uint64_t buffer_cycles, double_buffer_cycles, buffer_is_empty_at;
+static void wait_for_buffer(void) {
+  if (executed.cycles < buffer_is_empty_at) executed.cycles = buffer_is_empty_at;
+}
+
 static void access_memory(unsigned processor, qemu_plugin_meminfo_t info, uint64_t at, void* data) {
   (void)processor;
   (void)data;
   const int store = qemu_plugin_mem_is_store(info);
+  if (store && buffer_cycles > 0) {
+    wait_for_buffer();
+    const int is_double = qemu_plugin_mem_size_shift(info) == 3;
+    buffer_is_empty_at = executed.cycles + (is_double ? double_buffer_cycles : buffer_cycles);
+  }
   if (touch(&accesses, at / accesses.line_bytes, !store || accesses.allocates_on_store)) return;
+  if (!store) wait_for_buffer();
   executed.cycles += store ? accesses.store_miss_cycles : accesses.miss_cycles;
 }
 
@@ -160,7 +174,9 @@ static void execute_block(unsigned processor, void* data) {
   if (fetches.sets == 0) return;
   for (uint64_t line = block->begin / fetches.line_bytes; line <= (block->end - 1) / fetches.line_bytes;
        ++line) {
-    if (!touch(&fetches, line, 1)) executed.cycles += fetches.miss_cycles;
+    if (touch(&fetches, line, 1)) continue;
+    wait_for_buffer();
+    executed.cycles += fetches.miss_cycles;
   }
 }
 
@@ -249,6 +265,8 @@ static int read_model(const char* path) {
                 {"data_miss_cycles", &accesses.miss_cycles},
                 {"data_store_miss_cycles", &accesses.store_miss_cycles},
                 {"data_allocates_on_store", &accesses.allocates_on_store},
+                {"buffer_cycles", &buffer_cycles},
+                {"double_buffer_cycles", &double_buffer_cycles},
                 {"has_predictor", &has_predictor},
                 {"taken_cycles", &taken_cycles},
                 {"mispredicted_cycles", &mispredicted_cycles},

@@ -36,6 +36,13 @@ class Cache:
 
 
 @dataclasses.dataclass(frozen=True)
+class WriteBuffer:
+    """Of one store: cycles until it is empty again, after a store and after a double store."""
+    cycles: int
+    double_cycles: int
+
+
+@dataclasses.dataclass(frozen=True)
 class Branches:
     """Cycles beyond those of the instruction. `predicted`: by a table of two-bit counters; otherwise a taken branch costs `taken`."""
     taken: int = 0
@@ -55,6 +62,7 @@ class Model:
     predicts_taken: bool = False  # a branch waits for the condition codes only if it is not taken
     fetches: Cache = None
     accesses: Cache = None
+    write_buffer: WriteBuffer = None
     branches: Branches = Branches()
     basis: str = ""  # where the figures are from, and what is not known
 
@@ -165,4 +173,6 @@ def as_settings(model):
     if model.accesses:
         values.update(data_store_miss_cycles=model.accesses.store_miss_cycles,
                       data_allocates_on_store=int(model.accesses.allocates_on_store))
+    if model.write_buffer:
+        values.update(buffer_cycles=model.write_buffer.cycles, double_buffer_cycles=model.write_buffer.double_cycles)
     return "".join(f"{name} {value}\n" for name, value in values.items())
