@@ -122,6 +122,7 @@ void add_to(Crc32& crc, const PoseTrackerState& state) {
   add_to(crc, state.motion.velocity_um_period);
   crc.add_u32(static_cast<std::uint32_t>(state.motion_model));
   crc.add_u32(static_cast<std::uint32_t>(state.challenger));
+  crc.add_u32(static_cast<std::uint32_t>(state.owes_comparison));
   crc.add_u32(static_cast<std::uint32_t>(state.llr_q8));
   crc.add_u32(static_cast<std::uint32_t>(state.conservative_llr_q8));
 }

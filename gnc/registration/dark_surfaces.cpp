@@ -143,13 +143,13 @@ std::uint32_t dark_angles_of(const DarkSurfaces& dark) {
 void look_at_triangles(const SurfaceMesh& mesh, const FrameView& view, const RenderedSurface& surface,
                        const RayCount& bright, std::uint32_t dark_angles, DarkSurfaces& dark,
                        RenderedSurface* takes_out, WorkBudget& budget) {
-  if (!budget.spend(work::kDarkLook + mesh.triangles() * work::kDarkTriangle)) return;
+  if (!budget.spend(work::kDarkLook)) return;
   const RayCount all = all_rays(view, surface);
   const std::int32_t slope_q24 = slope_per_half_ray_q24(view);
   const auto look = [&](const ScreenTriangle& triangle) {
     Counter counter(view, surface);
     const int covered = visit_spans(triangle, counter);  // rays
-    if (!budget.spend(work::kDarkFront + triangle.height() * work::kDarkRow + covered * work::kDarkRay))
+    if (!budget.spend(work::kDarkTriangle + triangle.height() * work::kDarkRow + covered * work::kDarkRay))
       return false;
     const RayCount& rays = counter.rays();
     if (rays.drawn == 0) return true;

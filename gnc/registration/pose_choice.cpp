@@ -13,6 +13,7 @@ constexpr std::int64_t kLongestStep_ns = 3 * kNominalPeriod_ns / 2;  // between 
 constexpr RefinementSettings kFirst{3, 3, 512, 128, 1677722, 8388608};
 constexpr RefinementSettings kFirstSecond{2, 2, 512, 256, 1677722, 8388608};  // of the second attitude
 constexpr RefinementSettings kFull{3, 2, 160, 40, 1677722, 8388608};
+constexpr RefinementSettings kShortFull{2, 1, 80, 40, 1677722, 8388608};  // its last two steps
 // At the predicted pose.
 constexpr RefinementSettings kTracked{3, 1, 160, 40, 838861, 8388608};
 constexpr RefinementSettings kLongTrack{2, 1, 80, 40, 838861, 8388608};  // with a rate, and without a gap
@@ -22,10 +23,10 @@ constexpr RefinementSettings kTrackedFurther{2, 1, 160, 80, 838861, 8388608};
 constexpr RefinementSettings kLongSearch{4, 2, 512, 64, 4194304, 8388608};
 constexpr RefinementSettings kSearch{3, 2, 512, 128, 4194304, 8388608};
 constexpr RefinementSettings kShortSearch{2, 2, 512, 128, 4194304, 8388608};
-
-// A frame that has taken more than this registers an alternative shortly, so that the budget lasts for it
-// and for the fits of the motion.
-constexpr std::int32_t kMuchWork = 52'000'000;
+// Drawing the surface anew, and a placement, count as a step each.
+constexpr int kStepsOfDrawing = 1, kStepsOfPlacement = 1;
+constexpr int kStepsOfSearchAndComparison =
+    kSearch.steps + kStepsOfPlacement + kStepsOfDrawing + kShortSearch.steps;
 
 // 1 + 2 cos of the angle between two attitudes that are different ones.
 constexpr Fixed kTraceOf2Degrees = constant<Fixed>(2.99878165);
@@ -37,7 +38,6 @@ constexpr std::uint32_t kLeastOdds_ppm = 10'000;  // of a second attitude that i
 // Log-likelihood ratios [nats, Q8].
 constexpr std::int32_t kMostOfAFrame_q8 = 16 * 256;
 constexpr std::int32_t kWithoutAlternative_q8 = 4 * 256;  // of a frame
-constexpr std::int32_t kNetworkDisagrees_q8 = 1 * 256;    // against the track, per frame
 constexpr std::int32_t kMostOfNetwork_q8 = 4 * 256;       // its odds, in the first frames
 constexpr std::int32_t kClear_q8 = 6 * 256;               // after kFirst, for the second attitude
 constexpr std::int32_t kMostOfATrack_q8 = 2 * kMostOfAFrame_q8;
@@ -46,8 +46,6 @@ constexpr std::int32_t kMostOfATrack_q8 = 2 * kMostOfAFrame_q8;
 // after a short registration, or a 32nd.
 constexpr std::int32_t kMostByAFit_q8 = 6 * 256;
 constexpr int kFitShift = 0, kShortFitShift = 4, kMisfitShift = 5;
-// Against the track where the network disagrees, per frame.
-constexpr std::int32_t kConservativelyDisagrees_q8 = 4 * 256;
 
 void exchange(PoseCandidate& a, PoseCandidate& b) {
   const PoseCandidate kept = a;
@@ -143,6 +141,8 @@ struct LogLikelihoodRatio {
   std::int32_t conservative_q8;  // no more than is proven: whether it is verified
 };
 constexpr LogLikelihoodRatio kWithoutAlternative{kWithoutAlternative_q8, kWithoutAlternative_q8};
+// Against the track where the network disagrees, per frame.
+constexpr LogLikelihoodRatio kNetworkDisagrees{-1 * 256, -4 * 256};
 
 // How much of the log-likelihood ratio of the first pose to the second one is proven. A negative one counts
 // in full. If the second pose explains the frame, the difference of the costs counts up to six nats. It is
@@ -177,46 +177,77 @@ LogLikelihoodRatio first_llr(const PoseCandidate& first, const PoseCandidate& se
           conservative_llr_q8(first, second, kShortFitShift) + network_q8};
 }
 
+// Whether the budget is expected to cover a refinement of so many steps, drawn anew: each as dear as the
+// dearest one of this frame so far.
+bool covers(const PoseScratch& scratch, int steps) {
+  const RefinementScratch& refinement = scratch.refinement;
+  return refinement.budget.covers(std::int64_t{steps + kStepsOfDrawing} * refinement.dearest_step);
+}
+// The same at another attitude, where surfaces may be dark. A step then takes about 5/3 of one without.
+bool covers_elsewhere(const PoseScratch& scratch, int steps) {
+  const bool may_be_dearer = !scratch.refinement.surface.has_dark;
+  return covers(scratch, may_be_dearer ? steps * 5 / 3 + 1 : steps);
+}
+
+// As many steps of the search as the budget covers, at most all; zero: it covers none.
+RefinementSettings covered(const PoseScratch& scratch, RefinementSettings search) {
+  while (search.steps > 0 && !covers(scratch, search.steps)) --search.steps;
+  return search;
+}
+
+// Goes on with the candidate that was refined last, with the surface drawn anew if `is_anew`. What the budget
+// does not cover after all is not used.
+void improve(const PoseTarget& target, const RefinementSettings& settings, bool is_anew,
+             PoseScratch& scratch) {
+  if (!covers(scratch, settings.steps)) return;
+  scratch.other = scratch.best;
+  go_on(target, settings, is_anew, scratch, scratch.best);
+  if (!scratch.refinement.budget.end_part()) scratch.best = scratch.other;
+}
+
 // Registers the frame at the pose that the motion of the track predicts. After a gap, or if a short
-// registration does not explain the frame, in more steps; if they do not explain it either, also from the
-// network's attitude, and the one that explains it better stays. True: the network's attitude was tried.
-bool follow_motion(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
+// registration does not explain the frame, in more steps.
+void follow_motion(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
                    const PoseTrackerState& state) {
   PoseCandidate& best = scratch.best;
-  PoseCandidate& other = scratch.other;
   const Pose start{state.motion.turning.r_lrf_trf, state.motion.origin_lrf_um};
-  if (state.history.count >= kPosesOfARate && frame.elapsed_ns <= kLongestStep_ns) {
-    refine_candidate(target, start, kLongTrack, scratch, best);
-    if (best.evidence.fits()) return false;
-    refine_candidate_further(target, kTrackedFurther, scratch, best);
-  } else {
-    refine_candidate(target, start, kTracked, scratch, best);
-  }
-  if (best.evidence.fits()) return false;
-  // Another attitude is compared with the track's as an alternative, see alternative_to().
-  const Matrix3<Fixed>& of_network = frame.network.r_lrf_trf;
-  if (is_another_attitude(best.refinement.pose.r_lrf_trf, of_network)) return false;
-  refine_candidate(target, placed(target, frame, of_network, scratch), kSearch, scratch, other);
+  const bool is_short = state.history.count >= kPosesOfARate && frame.elapsed_ns <= kLongestStep_ns;
+  refine_candidate(target, start, is_short ? kLongTrack : kTracked, scratch, best);
+  if (is_short && !best.evidence.fits()) improve(target, kTrackedFurther, false, scratch);
+}
+
+// A frame that the track does not explain is registered at the network's attitude too, and the pose that
+// explains it better stays. False: the budget did not cover it.
+bool search_at_network(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch) {
+  PoseCandidate& best = scratch.best;
+  PoseCandidate& other = scratch.other;
+  if (!covers_elsewhere(scratch, kSearch.steps + kStepsOfPlacement)) return false;
+  refine_candidate(target, placed(target, frame, frame.network.r_lrf_trf, scratch), kSearch, scratch, other);
+  if (!scratch.refinement.budget.end_part()) return false;
   if (llr_q8(best, other) < 0) exchange(best, other);
   return true;
 }
 
-// Registers an attitude of the network at the position of the track. Returns what the frame says for the pose
-// of the track. `work`: what the frame has taken so far.
-LogLikelihoodRatio compare(const PoseTarget& target, const Alternative& alternative, std::int32_t work,
-                           PoseScratch& scratch) {
-  const Pose start{alternative.r_lrf_trf, scratch.best.refinement.pose.origin_lrf_um};
-  const bool is_short = work > kMuchWork;
-  const RefinementSettings& whole = scratch.best.evidence.fits() ? kFull : kSearch;
+// Registers an attitude of the network at the position of the track, shortly if the budget covers no more,
+// and sets what the frame says for the pose of the track. False: the budget did not cover it.
+bool compare(const PoseTarget& target, const Alternative& alternative, PoseScratch& scratch,
+             LogLikelihoodRatio& llr) {
+  const PoseCandidate& best = scratch.best;
+  const PoseCandidate& other = scratch.other;
+  if (!covers_elsewhere(scratch, kShortSearch.steps)) return false;
+  const Pose start{alternative.r_lrf_trf, best.refinement.pose.origin_lrf_um};
+  const bool is_short = !covers_elsewhere(scratch, kSearch.steps);
+  const RefinementSettings& whole = best.evidence.fits() ? kFull : kSearch;
   refine_candidate(target, start, is_short ? kShortSearch : whole, scratch, scratch.other);
-  LogLikelihoodRatio llr{
-      llr_q8(scratch.best, scratch.other),
-      conservative_llr_q8(scratch.best, scratch.other, is_short ? kShortFitShift : kFitShift)};
+  if (!scratch.refinement.budget.end_part()) return false;
+  if (!differs(best.refinement.pose.r_lrf_trf, other.refinement.pose.r_lrf_trf, kTraceOf2Degrees))
+    return true;
+  llr = {llr_q8(best, other), conservative_llr_q8(best, other, is_short ? kShortFitShift : kFitShift)};
   if (alternative.is_network) {
-    llr.full_q8 -= kNetworkDisagrees_q8;
-    llr.conservative_q8 -= kConservativelyDisagrees_q8;
+    llr.full_q8 += kNetworkDisagrees.full_q8;
+    llr.conservative_q8 += kNetworkDisagrees.conservative_q8;
   }
-  return llr;
+  return true;
 }
 
 }  // namespace
@@ -231,6 +262,7 @@ std::int32_t limited_llr_q8(std::int32_t llr_q8) {
 
 void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
                  PoseTrackerState& state) {
+  state.owes_comparison = 0;
   PoseCandidate& best = scratch.best;
   PoseCandidate& other = scratch.other;
   const bool has_second = offers_second(frame.network.r_lrf_trf, frame);
@@ -257,34 +289,39 @@ void start_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& 
   // at once, so that the first frame with dark surfaces takes no more steps than one without.
   const bool is_dark = best.evidence.dark_surfaces > 0, is_explained = best.evidence.fits();
   if (!is_dark || is_explained) {
-    go_on(target, kFull, is_second, scratch, best);
+    improve(target, covers(scratch, kFull.steps) ? kFull : kShortFull, is_second, scratch);
     if (is_dark || best.evidence.fits()) return;
   }
+  const RefinementSettings search = covered(scratch, kLongSearch);
+  if (search.steps == 0) return;
   other = best;
-  go_on(target, kLongSearch, is_second && is_dark, scratch, best);
-  if (llr_q8(best, other) < 0) exchange(best, other);
+  go_on(target, search, is_second && is_dark, scratch, best);
+  if (!scratch.refinement.budget.end_part() || llr_q8(best, other) < 0) exchange(best, other);
 }
 
 bool follow_track(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
                   PoseTrackerState& state) {
   PoseCandidate& best = scratch.best;
-  PoseCandidate& other = scratch.other;
-  const std::int32_t left_before = scratch.refinement.budget.left();
-  const bool has_tried_network = follow_motion(target, frame, scratch, state);
-  const std::int32_t work = left_before - scratch.refinement.budget.left();
+  const PoseCandidate& other = scratch.other;
+  follow_motion(target, frame, scratch, state);
+  // Another attitude than the track's is compared with it as an alternative. Where the budget does not cover
+  // the search and the comparison, they take turns.
+  const bool is_turn_of_comparison = state.owes_comparison != 0 &&
+                                     alternative_to(best.refinement.pose.r_lrf_trf, frame).exists &&
+                                     !covers_elsewhere(scratch, kStepsOfSearchAndComparison);
+  const bool searches = !best.evidence.fits() && !is_turn_of_comparison &&
+                        !is_another_attitude(best.refinement.pose.r_lrf_trf, frame.network.r_lrf_trf);
+  const bool has_searched = searches && search_at_network(target, frame, scratch);
   const Alternative alternative = alternative_to(best.refinement.pose.r_lrf_trf, frame);
-  const bool was_tried = has_tried_network && alternative.is_network;
+  const bool was_tried = has_searched && alternative.is_network;
   LogLikelihoodRatio llr = kWithoutAlternative;
-  if (alternative.exists && !was_tried) {
-    const LogLikelihoodRatio compared = compare(target, alternative, work, scratch);
-    const bool is_another =
-        differs(best.refinement.pose.r_lrf_trf, other.refinement.pose.r_lrf_trf, kTraceOf2Degrees);
-    if (is_another) llr = compared;
-  }
+  scratch.is_uncompared = alternative.exists && !was_tried && !compare(target, alternative, scratch, llr);
+  if (scratch.is_uncompared) llr = alternative.is_network ? kNetworkDisagrees : LogLikelihoodRatio{0, 0};
+  state.owes_comparison = scratch.is_uncompared && !is_turn_of_comparison ? 1 : 0;
   if (!explains(best)) llr.conservative_q8 = min(llr.conservative_q8, 0);
   add_llr(llr, state);
   // A pose that this frame speaks against is not taken, whatever spoke against the track before.
-  if (llr.full_q8 >= 0) return true;
+  if (llr.full_q8 >= 0 || scratch.is_uncompared) return true;
   const bool were_compared = are_whole(best, other);
   const bool is_lost = !explains(best) && explains(other);
   if (state.llr_q8 >= 0 && !is_lost) return true;

@@ -37,6 +37,9 @@ struct PoseTrackerState {
   PoseMotion motion;              // at the last frame; valid if there is a pose
   int motion_model = kSpinModel;  // under which the poses agree best, so far
   int challenger = kTumbleModel;  // the motion model that is compared with it next
+  // 1: the budget of the last frame did not cover the comparison with another attitude. In the next one it
+  // goes first.
+  int owes_comparison = 0;
   // Log-likelihood ratio of the attitude that it follows to the others, and as much of it as is proven; never
   // more [nats].
   std::int32_t llr_q8 = 0, conservative_llr_q8 = 0;
@@ -54,6 +57,7 @@ struct PoseScratch {
   RefinementScratch refinement;
   PlacementScratch placement;
   PoseCandidate best, other;
+  bool is_uncompared;      // the frame's comparison with another attitude was not covered
   WorkBudget fit_reserve;  // held back for the one fit that every frame makes
   PoseFitResult fit, other_fit;
 };

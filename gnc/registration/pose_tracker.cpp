@@ -94,9 +94,11 @@ void fit_by_reserve(const PoseFrame& frame, const PoseMotion& start, int iterati
 // it.
 bool fit_by_budget(const PoseFrame& frame, int motion_model, const PoseMotion& start, int iterations,
                    PoseScratch& scratch, const PoseTrackerState& state) {
-  return fit_motion(
-      state.history, frame.motion_models[static_cast<std::size_t>(clamp(motion_model, 0, kMotionModels - 1))],
-      scratch.view.target_radius_um, start, iterations, scratch.refinement.budget, scratch.other_fit);
+  WorkBudget& budget = scratch.refinement.budget;
+  fit_motion(state.history,
+             frame.motion_models[static_cast<std::size_t>(clamp(motion_model, 0, kMotionModels - 1))],
+             scratch.view.target_radius_um, start, iterations, budget, scratch.other_fit);
+  return budget.end_part();
 }
 
 int iterations_for(int poses) {
@@ -132,25 +134,26 @@ void try_other_motion_model(const PoseFrame& frame, const PoseMotion& start, Pos
   scratch.fit = scratch.other_fit;
 }
 
-// Fits the motion to the others.
-void forget(std::uint32_t poses, const PoseFrame& frame, PoseScratch& scratch, PoseTrackerState& state) {
-  if (poses == 0) return;
+// Fits the motion to the others. False: the budget does not cover it, and the motion is still that of all.
+bool forget(std::uint32_t poses, const PoseFrame& frame, PoseScratch& scratch, PoseTrackerState& state) {
+  if (poses == 0) return true;
   state.history.remove(poses);
-  if (fit_by_budget(frame, state.motion_model, scratch.fit.motion, 1, scratch, state))
-    scratch.fit = scratch.other_fit;
+  if (!fit_by_budget(frame, state.motion_model, scratch.fit.motion, 1, scratch, state)) return false;
+  scratch.fit = scratch.other_fit;
+  return true;
 }
 
 // Fits the motion to the poses and forgets those that do not agree with it, except the newest. False: the
-// newest does not agree.
+// newest does not agree, or the motion is not that of the poses that were kept.
 bool fit_track(const PoseFrame& frame, const PoseMotion& start, PoseScratch& scratch,
                PoseTrackerState& state) {
   fit_under_motion_model(frame, start, scratch, state);
   try_other_motion_model(frame, start, scratch, state);
   const std::uint32_t newest = std::uint32_t{1} << (state.history.count - 1);
   const bool newest_agrees = (scratch.fit.against & newest) == 0;
-  forget(scratch.fit.against & ~newest, frame, scratch, state);
+  const bool is_fitted = forget(scratch.fit.against & ~newest, frame, scratch, state);
   state.motion = scratch.fit.motion;
-  return newest_agrees;
+  return newest_agrees && is_fitted;
 }
 
 // Of a motion that has coasted since the last pose: what is not known of the rates adds to turn and position.
@@ -177,6 +180,7 @@ void limit_damage(PoseTrackerState& state) {
   state.history.count = clamp(state.history.count, 0, PoseHistory::kMost);
   state.llr_q8 = limited_llr_q8(state.llr_q8);
   state.conservative_llr_q8 = min(limited_llr_q8(state.conservative_llr_q8), state.llr_q8);
+  state.owes_comparison = clamp(state.owes_comparison, 0, 1);
   if (state.history.count == 0) state.motion = {};
 }
 
@@ -191,7 +195,9 @@ void begin_budgets(const PoseTrackerState& state, std::int32_t budget, PoseScrat
   const std::int32_t reserve = work_of_fit(state.history, iterations_for(state.history.count + 1));
   scratch.fit_reserve.begin(reserve);
   scratch.refinement.budget.begin(budget);
-  scratch.refinement.budget.spend(reserve);
+  scratch.refinement.budget.spend(work::kFrame + reserve);
+  scratch.refinement.dearest_step = 0;
+  scratch.is_uncompared = false;
 }
 
 // False: registration does not work in this frame.
@@ -205,6 +211,7 @@ bool view_target(const PoseTarget& target, const PoseFrame& frame, bool is_track
 void forget_track(PoseTrackerState& state) {
   state.history.count = 0;
   state.llr_q8 = state.conservative_llr_q8 = 0;
+  state.owes_comparison = 0;
 }
 
 // Registers the frame at the predicted pose or at the attitudes of the network. False: its motion is not that
@@ -213,6 +220,7 @@ bool register_frame(const PoseTarget& target, const PoseFrame& frame, bool is_tr
                     PoseTrackerState& state, PoseEstimate& estimate) {
   const int poses_before = state.history.count;
   const std::int32_t llr_before_q8 = state.llr_q8, conservative_before_q8 = state.conservative_llr_q8;
+  const int owed_before = state.owes_comparison;
   if (is_tracked) {
     is_tracked = follow_track(target, frame, scratch, state);
   } else {
@@ -225,10 +233,11 @@ bool register_frame(const PoseTarget& target, const PoseFrame& frame, bool is_tr
     state.history.count = poses_before;
     state.llr_q8 = llr_before_q8;
     state.conservative_llr_q8 = conservative_before_q8;
+    state.owes_comparison = owed_before;
   }
   estimate.evidence = scratch.best.evidence;
   estimate.conservative_llr_q8 = state.conservative_llr_q8;
-  estimate.doubts = is_cut_short ? kPoseAmbiguous : 0;
+  estimate.doubts = is_cut_short || scratch.is_uncompared ? kPoseAmbiguous : 0;
   return is_tracked;
 }
 
@@ -291,7 +300,6 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
   const std::int32_t llr_before_q8 = state.llr_q8;
   is_tracked = register_frame(target, frame, is_tracked, scratch, state, estimate);
   if (!estimate_motion(frame, is_tracked, scratch, state, estimate)) return;
-  if (scratch.refinement.budget.is_exhausted()) estimate.doubts |= kPoseAmbiguous;
   if (!tells_rate(state.history)) estimate.doubts |= kPoseMotion;
   if (llr_before_q8 - state.llr_q8 > kMostAgainstTrack_q8) estimate.doubts |= kPoseAmbiguous;
   estimate.poses = state.history.count;

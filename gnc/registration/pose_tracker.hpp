@@ -32,7 +32,7 @@ inline constexpr PoseDoubts kPoseRanges = 4;   // the ranges do not lie on the s
 // Returns beside the surface, too many missing, or its silhouette elsewhere.
 inline constexpr PoseDoubts kPoseOutline = 8;
 // The conservative log-likelihood ratio is small, another attitude explains this frame better, or the work
-// budget was exhausted.
+// budget did not cover the registration or its comparison with another attitude.
 inline constexpr PoseDoubts kPoseAmbiguous = 16;
 // Fewer than three poses, they contradict one motion, or they are too far apart to tell the rate.
 inline constexpr PoseDoubts kPoseMotion = 32;

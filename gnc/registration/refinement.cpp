@@ -104,6 +104,7 @@ void refine_further(const SurfaceMesh& mesh, const FrameView& view, const Refine
   const auto every = [&](int step) { return step < settings.thinned_steps && step < steps ? 2 : 1; };
   fit_ranges(view, result.pose, surface, scratch.ranges, budget, every(0));
   for (int i = 0; i < steps && budget.spend(work::kStep); ++i) {
+    const std::int32_t left_before = budget.left();
     if (i == 0 || may_be_dark) {
       budget.spend(work::kTable);
       make_silhouette_table(result.fill_q16, scratch.table);
@@ -122,6 +123,7 @@ void refine_further(const SurfaceMesh& mesh, const FrameView& view, const Refine
     result.is_complete = result.is_complete && surface.is_complete;
     if (may_be_dark) take_out_dark();
     fit_ranges(view, result.pose, surface, scratch.ranges, budget, every(i + 1));
+    scratch.dearest_step = max(scratch.dearest_step, work::kStep + left_before - budget.left());
   }
   result.is_complete = result.is_complete && !budget.is_exhausted();
 }

@@ -10,7 +10,8 @@
 namespace tumblesight::gnc {
 
 struct RefinementScratch {
-  WorkBudget budget;  // of the frame
+  WorkBudget budget;          // of the frame
+  std::int32_t dearest_step;  // work of the dearest step of the frame so far
   RenderedSurface surface;
   DarkSurfaces dark;
   SilhouetteTable table;

@@ -142,7 +142,8 @@ void render(const SurfaceMesh& mesh, const FrameView& view, const Pose& pose, Re
         });
     if (covered > 0) surface.covering.add(static_cast<unsigned>(triangle.index));
     drawn += covered + triangle.height();
-    return budget.spend(work::kFront + triangle.height() * work::kRow + covered * work::kRay);
+    const std::int32_t plane = covered > 0 ? work::kCovering : 0;
+    return budget.spend(work::kFront + plane + triangle.height() * work::kRow + covered * work::kRay);
   };
   for (int i = 0; i < mesh.triangles(); ++i) {
     const Visited visited = visit_front(mesh, i, view.rays, vertices, all_inside, draw);

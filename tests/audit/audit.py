@@ -71,16 +71,17 @@ def measure(processor, numerics, program, plugin, folder):
                if name not in ("application", "telemetry", "registration") and len({step[i] for step in alike}) > 1}
     stages = largest(names, steps)
     stage_cycles = {title: largest(names, cycles) for title, cycles in by_model.items()}
-    longest, longest_cycles = {}, {}
+    longest, longest_cycles, registration_cycles, cycles_beside = {}, {}, {}, {}
     for model in models if numerics == "fixed" else ():
-        longest, longest_cycles[model.title] = step_counts.count_longest_steps(
+        title = model.title
+        longest, longest_cycles[title], registration_cycles[title], cycles_beside[title] = step_counts.count_longest_steps(
             processor, model, program.with_name(LONGEST_STEPS), plugin, folder)
     sizes = image.sizes(processor, program)
     stack_bytes, path = stack.worst_case(program.parents[1], numerics)
     return {"digest": digest, "digest_is_golden": digest == golden()[numerics], "set": heading[3], "frames": heading[4],
             "target": heading[1], "steps": len(steps), "stages": stages, "instructions": sum(stages.values()), "longest_steps": longest,
             "stage_cycles": stage_cycles, "cycles": {title: sum(of.values()) for title, of in stage_cycles.items()},
-            "longest_cycles": longest_cycles,
+            "longest_cycles": longest_cycles, "registration_cycles": registration_cycles, "cycles_beside": cycles_beside,
             # Float32 arithmetic may branch on the data on some processors.
             "equal_counts": not unequal or numerics == "float32", "unequal": unequal,
             "text": sizes["text"], "read_only": sizes["read_only"], "ram": sizes["data"] + sizes["bss"] + stack_bytes,

@@ -80,7 +80,7 @@ ALL = (
     Processor("cortex-m7", 100, "SAMRH71", 41, (Limit(arm.M7_TIGHTLY_COUPLED, 0.20, 0.45), Limit(arm.M7_CACHED, 0.20, 0.45))),
     Processor("cortex-r5f", 500, "Zynq UltraScale+", 45, (Limit(arm.R5F, 0.05, 0.15),)),
     Processor("rv64", 600, "PolarFire SoC", 80, (Limit(riscv.U54, 0.10, 0.20),)),
-    Processor("leon3", 100, "GR712RC class", 80, (Limit(sparc.SLOW, 0.45, 0.80), Limit(sparc.FAST, 0.35, 0.65))),
+    Processor("leon3", 100, "GR712RC class", 80, (Limit(sparc.SLOW, 0.45, 0.68), Limit(sparc.FAST, 0.35, 0.55))),
 )
 
 

@@ -86,16 +86,19 @@ def count(processor, model, program, plugin, folder):
     return ([name for name, _ in wanted if name != "(end)"], *run_and_count(processor, model, program, plugin, folder, wanted))
 
 
-# A whole step of flight_worst_step.
-WHOLE_STEP = (("step", r"^tumblesight_step_begins"), ("(end)", r"^tumblesight_step_ended"))
+# A whole step of flight_worst_step, and the registration in it.
+WHOLE_STEP = (("step", r"^tumblesight_step_begins"), ("(end)", r"^tumblesight_step_ended"), _AFTER_HEAD[-2], _AFTER_HEAD[-1])
 
 
 # Verifies TS-TIM-100.
 def count_longest_steps(processor, model, program, plugin, folder):
-    """({name of a step: instructions}, {name of a step: cycles}), the most of all steps with this name, without the quiet ones"""
+    """Four of {name of a step: the most of all steps with this name}, without the quiet ones: instructions, cycles, cycles of
+    registration, and cycles beside it."""
     instructions, cycles, console = run_and_count(processor, model, program, plugin, folder, WHOLE_STEP)
     names = [line.split(" ", 1)[1] for line in console if line.startswith("step ")]
     if len(names) != len(cycles) or "all steps done" not in console:
         raise SystemExit(f"audit: {program} on {processor.name}: {len(names)} names for {len(cycles)} steps:\n" + "\n".join(console[-5:]))
-    return tuple({name: max(steps[i][0] for i in range(len(names)) if names[i] == name) for name in dict.fromkeys(names) if name != "quiet"}
-                 for steps in (instructions, cycles))
+    registration = [step[1] for step in cycles]  # after "step"
+    whole = [sum(step) for step in cycles]
+    return tuple({name: max(steps[i] for i in range(len(names)) if names[i] == name) for name in dict.fromkeys(names) if name != "quiet"}
+                 for steps in ([sum(step) for step in instructions], whole, registration, [a - b for a, b in zip(whole, registration)]))

@@ -21,7 +21,8 @@ TITLES = [limit.model.title for limit in PROCESSOR.limits]
 def result(**changes):
     good = {"digest": "0", "digest_is_golden": True, "equal_counts": True, "unequal": {}, "forbidden": {}, "floating_point": [],
             "instructions": 1000, "cycles": {title: 1200 for title in TITLES}, "longest_steps": {},
-            "longest_cycles": {title: {} for title in TITLES}, "text": 50, "read_only": 50, "ram": 50, "stack": 5, "cfs_app": {}}
+            "longest_cycles": {title: {} for title in TITLES}, "registration_cycles": {title: {} for title in TITLES},
+            "cycles_beside": {title: {} for title in TITLES}, "text": 50, "read_only": 50, "ram": 50, "stack": 5, "cfs_app": {}}
     return [(PROCESSOR, "fixed", {**good, **changes})]
 
 
@@ -58,6 +59,26 @@ class Failures(unittest.TestCase):
         self.assertEqual(self.of(longest_cycles={**others, limit.model.title: {"frame": most, "boot": more}}), [])
         for name in ("frame, commands", "table rebuilt", "model activated"):
             self.assertIn(f"'{name}'", self.of(longest_cycles={**others, limit.model.title: {"boot": 1, name: more}})[0])
+
+    # Verifies TS-TIM-120.
+    def test_the_bound_of_a_step_is_limited_and_registration_by_its_budget(self):
+        leon3, budget = processors.by_name("leon3"), report.registration_budget()
+        slow, fast = (limit.model.title for limit in leon3.limits)
+        self.assertEqual(slow, report.BUDGETED_MODEL)
+        def of(registration, beside):
+            figures = {"cycles": {slow: 1, fast: 1}, "longest_cycles": {slow: {"frame": 1}, fast: {"frame": 1}},
+                       "registration_cycles": {slow: {"frame": registration, "table rebuilt": 0}, fast: {"frame": 300, "table rebuilt": 0}},
+                       "cycles_beside": {slow: {"frame": beside, "table rebuilt": 9000}, fast: {"frame": 200, "table rebuilt": 9000}}}
+            return [(leon3, "fixed", {**result()[0][2], **figures})]
+
+        most = budget * 9 // 10
+        self.assertEqual(report.bounds(of(400, 600)), {slow: 600 + budget, fast: 200 + round(0.75 * budget)})
+        self.assertEqual(report.bounds(result()), {}, "without LEON3")
+        self.assertEqual(report.failures(of(most, 600), {}, BUDGETS, MACS), [])
+        self.assertIn("not the worst any more", report.failures(of(budget // 2, 600), {}, BUDGETS, MACS)[0])
+        beside = round(leon3.limits[0].longest_step * report.PERIOD_S * leon3.clock_mhz * 1e6)
+        self.assertIn("the bound of a step", report.failures(of(most, beside), {}, BUDGETS, MACS)[0])
+        self.assertIn("registration takes", report.failures(of(budget + 1, 600), {}, BUDGETS, MACS)[-1])
 
     def test_growth_of_a_longest_step_is_reported(self):
         before = {"cortex-m7": {"fixed": {"longest_steps": {"table rebuilt": 1000}, "instructions": 1000, "text": 50, "read_only": 50,
@@ -152,7 +173,9 @@ class Processors(unittest.TestCase):
 
 class Documents(unittest.TestCase):
     FIGURES = {"set": "portable", "stages": {"application": 400, "conv1": 600}, "longest_steps": {"frame": 1500},
-               "longest_cycles": {title: {"frame": 2000} for title in TITLES}}
+               "longest_cycles": {title: {"frame": 2000} for title in TITLES},
+               "registration_cycles": {title: {"frame": 1000} for title in TITLES},
+               "cycles_beside": {title: {"frame": 1000} for title in TITLES}}
 
     def test_table_of_the_readme_is_replaced_between_its_marks(self):
         text = f"before\n{report.BEGIN}\nold\n{report.END}\nafter\n"

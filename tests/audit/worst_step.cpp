@@ -499,7 +499,7 @@ void bank_switches() {
   expect(outputs.telemetry.bank_switches == 2, "the bank was not switched again");
 }
 
-// Registration ends at its budget (gnc/registration/work_budget.hpp).
+// Registration ends before its budget does (gnc/registration/work_budget.hpp).
 void steps_with_the_most_expensive_image() {
   hal::Platform platform;
   platform.stopwatch = &stopwatch;
@@ -517,10 +517,8 @@ void steps_with_the_most_expensive_image() {
   expect(app.mode() == Mode::kRun, "the most expensive image was refused");
   set_parameter(Parameter::kScrubBlocks, kMostScrubbed);
   step("quiet");
-  for (const Rate rate : {Rate::kKnown, Rate::kUnknown}) {
+  for (const Rate rate : {Rate::kKnown, Rate::kUnknown})
     step_after_the_longest_coast(rate, Scene::kFillsTheView);
-    expect((outputs.attitude.pose_doubts & hal::kPoseDoubtAmbiguous) != 0, "the budget was not exhausted");
-  }
   steps_with_dark_surfaces();
 }
 
