@@ -1,8 +1,8 @@
 // WorkBudget: how much work the registration of one frame may take, for any model image and any frame.
 //
-// Work is counted in cycles of LEON3 with the slow multiplier, at prices that the model of docs/audit.md does
-// not exceed: for vertices, triangles, rows and rays that are drawn, blocks that are compared, edges and
-// places that are followed. It is the same for the same inputs on every processor.
+// Work is counted in cycles of LEON3 with the slow multiplier, at prices from the model of docs/audit.md: for
+// vertices, triangles, rows and rays that are drawn, blocks that are compared, edges and places that are
+// followed. It is the same for the same inputs on every processor.
 //
 // A frame needs the registration at its first poses. If the budget does not cover it, the frame counts as one
 // that could not be registered. All else is begun only if the budget is expected to cover it. A part that

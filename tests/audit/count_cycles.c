@@ -125,8 +125,7 @@ static int touch(Cache* cache, uint64_t line, int allocate) {
   return hit;
 }
 
-/* The write buffer holds one store. Until it is empty the next store waits, and a fetch or load that misses.
- */
+/* The write buffer holds one store. Until it is empty, stores wait, and so do fetches and loads that miss. */
 static uint64_t buffer_cycles, double_buffer_cycles, buffer_is_empty_at;
 static void wait_for_buffer(void) {
   if (executed.cycles < buffer_is_empty_at) executed.cycles = buffer_is_empty_at;

@@ -218,7 +218,7 @@ COMPARED = (
     "-leon3 -freq 100 -dumbio`, commands `+bp`, `run`, `perf`.)", "",
     "**Held against the hardware's description.** GRLIB 2025.2 (`leon3s`; `v8=2`, `bp=0` and `v8=16#32#`, `bp=1`; `lddel=1`, no MMU), simulated",
     "with GHDL, and a memory of 9 wait states for the first word, none for the others and 3 for a write. About 90 short kernels, and 32",
-    "slices of `flight_replay` of 34 to 70 thousand cycles from cold caches, in every stage. With the slow multiplier the model takes",
+    "slices of `flight_replay` of 34 to 70 thousand cycles from cold caches, from all parts of a step. With the slow multiplier the model takes",
     "between 0.987 and 1.025 of the simulated cycles of a slice and 1.003 of all, with the fast one 0.987 to 1.040 and 1.005. A data miss takes 14",
     "cycles as in the model; a fetch miss 18 after a branch and 12 in a row, in the model 17. Slower memories take longer: with 9 wait",
     "states for a write (a write buffer of 11 cycles) a recorded frame takes 125 M cycles with the slow multiplier and 95 M with the fast one.",
@@ -254,7 +254,8 @@ def _longest_steps(fixed):
         f"most that registration may take, {budget / 1e6:.1f} M cycles of {BUDGETED_MODEL} (`gnc/registration/work_budget.hpp`; {most / 1e6:.1f} M in the",
         "dearest of these steps). Registration charges each part of its work before it is done. The prices are the least ones that cover the",
         "cycles of each of 133 frames, stage by stage, and 3 % more: 90 recorded frames of two targets with dark surfaces and hidden parts, and",
-        "43 of `flight_worst_step`. They took 90 to 99 % of the prices before the 3 %. On the other models the budget is scaled by their largest",
+        "43 of `flight_worst_step`. They took 90 to 99 % of the prices before the 3 %, without the workarounds of GR712RC. No price was proven",
+        "on its own: an image whose triangles and edges are unlike those may take more. On the other models the budget is scaled by their largest",
         "share of these cycles in any step above; there the bound is an estimate.", ""]
 
 
