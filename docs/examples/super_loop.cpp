@@ -127,6 +127,6 @@ int main() {
   for (;;) {
     std::uint32_t slips = 0;
     const std::int64_t now_ns = timer.wait_next_release_ns(slips);
-    fsw::run_cycle(app, {lidar, link, watchdog}, now_ns, slips, workspace);
+    fsw::run_cycle(app, {lidar, link, watchdog, stopwatch}, now_ns, slips, workspace);
   }
 }

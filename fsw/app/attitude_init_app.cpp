@@ -141,7 +141,6 @@ void AttitudeInitApp::step_with(std::int64_t now_ns, const StepInputs& inputs, S
   ModelManager models(state, estimator_, scrubber_, report);
   const bool usable =
       TUMBLESIGHT_ASSERT(state.assertions, is_complete(state.platform) && keeps_limits(inputs));
-  const std::uint64_t start_ns = usable ? state.platform.stopwatch->now_ns() : 0;
   const std::int64_t previous_ns = state.has_cycle ? state.now_ns : now_ns;
   const bool time_advances = begin_cycle(state, now_ns);
   clear(outputs);
@@ -162,7 +161,7 @@ void AttitudeInitApp::step_with(std::int64_t now_ns, const StepInputs& inputs, S
     take_frames(inputs, previous_ns, time_advances, outputs, report);
     if (!state.long_task) models.continue_copy();
     Supervisor(state, modes, models, report)
-        .supervise(outputs.attitude.validity, inputs.cycle_slips, start_ns, resets_before);
+        .supervise(outputs.attitude.validity, inputs.cycle_slips, inputs.timing.previous_us, resets_before);
   }
   modes.go_safe_on_assertion();
   // Also if the inputs were refused: a reset must not undo the SAFE that follows.

@@ -1,5 +1,7 @@
 #include "fsw/app/cycle.hpp"
 
+#include "fsw/app/counter.hpp"
+
 namespace tumblesight::fsw {
 namespace {
 
@@ -143,11 +145,13 @@ void receive_commands(hal::Link& link, StepInputs& inputs) {
 
 void run_cycle(AttitudeInitApp& app, const CycleInterfaces& interfaces, std::int64_t now_ns,
                std::uint32_t cycle_slips, CycleWorkspace& workspace) {
+  const std::uint64_t start_ns = interfaces.stopwatch.now_ns();
   app.correct_state();
   receive_frames(app, interfaces.lidar, now_ns, workspace);
   receive_chaser(interfaces.navigation, now_ns, workspace.inputs);
   receive_commands(interfaces.link, workspace.inputs);
   workspace.inputs.cycle_slips = cycle_slips;
+  workspace.inputs.timing = {start_ns, workspace.previous_cycle_us, interfaces.keeps_deadline};
   app.step(now_ns, workspace.inputs, workspace.outputs);
 
   const StepOutputs& outputs = workspace.outputs;
@@ -157,6 +161,7 @@ void run_cycle(AttitudeInitApp& app, const CycleInterfaces& interfaces, std::int
   for (int i = 0; i < outputs.event_count; ++i) link.publish(outputs.events[static_cast<std::size_t>(i)]);
   if (outputs.has_dump) link.publish(outputs.dump);
   if (outputs.duties_done) interfaces.watchdog.kick();
+  workspace.previous_cycle_us = elapsed_us(start_ns, interfaces.stopwatch.now_ns());
 }
 
 }  // namespace tumblesight::fsw

@@ -9,6 +9,7 @@
 #include "hal/lidar.hpp"
 #include "hal/link.hpp"
 #include "hal/navigation.hpp"
+#include "hal/stopwatch.hpp"
 #include "hal/watchdog.hpp"
 
 namespace tumblesight::fsw {
@@ -20,6 +21,7 @@ struct CycleWorkspace {
   std::array<gnc::FrameSignature, 2> signatures;  // of the frames, where they are compared in full
   StepInputs inputs;
   StepOutputs outputs;
+  std::uint32_t previous_cycle_us = 0;  // 0: not measured
 };
 
 // The interfaces of a cycle.
@@ -27,13 +29,17 @@ struct CycleInterfaces {
   hal::Lidar& lidar;
   hal::Link& link;
   hal::Watchdog& watchdog;
+  hal::Stopwatch& stopwatch;
   hal::Navigation* navigation = nullptr;  // nullptr: the chaser's attitude is not known
+  // A late cycle cuts its registration short, so that its report is on time. False for runs whose results
+  // must not depend on how fast the machine is.
+  bool keeps_deadline = true;
 };
 
 // Receives at most kMaxDeliveriesPerCycle deliveries of the LiDAR and kMaxCommandsPerStep commands; the
 // others wait for the next cycle. The step gets the newest usable frame. `now_ns`: time of the cycle.
 // `cycle_slips`: releases of the task missed since the last cycle. Kicks the watchdog after everything is
-// published, if the step reports duties_done.
+// published, if the step reports duties_done. The telemetry of the next cycle says how long all of this took.
 void run_cycle(AttitudeInitApp& app, const CycleInterfaces& interfaces, std::int64_t now_ns,
                std::uint32_t cycle_slips, CycleWorkspace& workspace);
 

@@ -1,6 +1,7 @@
 #include "fsw/app/frame_handler.hpp"
 
 #include "fsw/app/counter.hpp"
+#include "fsw/app/cycle_deadline.hpp"
 #include "gnc/estimation/covariance.hpp"
 
 namespace tumblesight::fsw {
@@ -90,11 +91,13 @@ void FrameHandler::pass_over() {
 
 void FrameHandler::use(const StepInputs& inputs) {
   const gnc::RangeImage& frame = *inputs.frame;
-  const gnc::FrameInputs frame_inputs{frame, inputs.chaser, inputs.chaser_now, state_.now_ns};
+  hal::Stopwatch& stopwatch = *state_.platform.stopwatch;
+  CycleDeadline deadline(stopwatch, inputs.timing.start_ns, state_.table[Parameter::kCycleBudget_us]);
+  const gnc::FrameInputs frame_inputs{frame, inputs.chaser, inputs.chaser_now, state_.now_ns,
+                                      inputs.timing.keeps_deadline ? &deadline : nullptr};
   const gnc::FrameTrackerLimits limits = state_.tracker_limits();
   gnc::FrameOutcome& outcome = workspace_.outcome;
   hal::Telemetry& counters = state_.counters;
-  hal::Stopwatch& stopwatch = *state_.platform.stopwatch;
   const std::uint64_t start_ns = stopwatch.now_ns();
   tracker_.use(frame_inputs, limits, state_.tracking, outcome);
   const std::uint64_t end_ns = stopwatch.now_ns();
@@ -109,6 +112,7 @@ void FrameHandler::use(const StepInputs& inputs) {
   counters.inference_us = elapsed_us(start_ns, end_ns);
   if (counters.inference_us > counters.inference_max_us) counters.inference_max_us = counters.inference_us;
   note_use(frame);
+  if (outcome.estimate.pose.is_cut_short) note_cut_short(frame, deadline.since_start_us());
   tracker_.conclude(frame_inputs, limits, state_.tracking, outcome);
   report_attitude(frame, note_doubts(frame));
 }
@@ -187,6 +191,13 @@ void FrameHandler::note_use(const gnc::RangeImage& frame) {
   }
   count(counters.frames_used);
   state_.frames_unused = 0;
+}
+
+void FrameHandler::note_cut_short(const gnc::RangeImage& frame, std::uint32_t since_start_us) {
+  count(state_.counters.registrations_cut_short);
+  state_.faults_seen |= bit_of(Fault::kDeadline);
+  report_(EventId::kRegistrationCutShort, bits_of(frame.sequence_number),
+          static_cast<std::int32_t>(since_start_us / 1000U));
 }
 
 // kFrameRefused: the attitude is unsound and must not be reported.

@@ -31,6 +31,8 @@ class FrameHandler {
   void use(const StepInputs& inputs);
   void note_refusal(gnc::FrameVerdict verdict, std::uint32_t sequence_number, std::int64_t exposure_time_ns);
   void note_bad_content(gnc::FrameStatus content, std::uint32_t sequence_number, std::int32_t rays);
+  // `since_start_us`: since the cycle began.
+  void note_cut_short(const gnc::RangeImage& frame, std::uint32_t since_start_us);
   void note_use(const gnc::RangeImage& frame);
   Validity note_doubts(const gnc::RangeImage& frame);
   void report_attitude(const gnc::RangeImage& frame, Validity validity);

@@ -29,6 +29,13 @@ struct DroppedFrame {
   std::uint16_t rays = 0;
 };
 
+// Of the cycle that the step is part of, by the platform's stopwatch.
+struct CycleTiming {
+  std::uint64_t start_ns = 0;
+  std::uint32_t previous_us = 0;  // that the previous cycle took; 0: not measured
+  bool keeps_deadline = false;    // a late cycle cuts its registration short (cycle_deadline.hpp)
+};
+
 // Counts outside their range are a bug of the caller: the step raises an assertion and goes SAFE.
 struct StepInputs {
   const gnc::RangeImage* frame = nullptr;  // the newest usable one; nullptr: no frame in this cycle
@@ -45,6 +52,7 @@ struct StepInputs {
   int command_count = 0;
   hal::DroppedCommands commands_dropped;  // by the link, since the last step
   std::uint32_t cycle_slips = 0;          // releases of the task missed since the last step
+  CycleTiming timing;
 
   int deliveries() const { return (frame != nullptr ? 1 : 0) + dropped_count + frame_wrong_size; }
 };

@@ -4,7 +4,7 @@
 
 namespace tumblesight::fsw {
 
-void Supervisor::supervise(Validity validity, std::uint32_t cycle_slips, std::uint64_t start_ns,
+void Supervisor::supervise(Validity validity, std::uint32_t cycle_slips, std::uint32_t previous_cycle_us,
                            std::uint32_t resets_before) {
   const bool has_attitude = validity == Validity::kValid || validity == Validity::kDoubtful;
   if (state_.mode == Mode::kRun && !has_attitude) state_.faults_seen |= bit_of(Fault::kOutage);
@@ -13,7 +13,7 @@ void Supervisor::supervise(Validity validity, std::uint32_t cycle_slips, std::ui
     state_.faults_seen |= bit_of(Fault::kSlip);
     report_(EventId::kCycleSlipped, clamp_to_int32(cycle_slips));
   }
-  measure(start_ns);
+  if (previous_cycle_us > 0) note_duration(previous_cycle_us);
   constexpr int kLast = static_cast<int>(Fault::kTrackRestarts);
   static_assert(kLast == kFaults - 1, "behind the faults whose responses reset the estimator");
   for (int i = 0; i < kLast; ++i) observe(static_cast<Fault>(i));
@@ -37,19 +37,19 @@ void Supervisor::observe(Fault fault) {
   }
 }
 
-void Supervisor::measure(std::uint64_t start_ns) {
-  constexpr std::array<std::uint32_t, hal::Telemetry::kStepTimeBins - 1> kEdges_us{
+void Supervisor::note_duration(std::uint32_t cycle_us) {
+  constexpr std::array<std::uint32_t, hal::Telemetry::kCycleTimeBins - 1> kEdges_us{
       1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000};
   hal::Telemetry& counters = state_.counters;
-  counters.step_us = elapsed_us(start_ns, state_.platform.stopwatch->now_ns());
-  if (counters.step_us > counters.step_max_us) counters.step_max_us = counters.step_us;
+  counters.cycle_us = cycle_us;
+  if (cycle_us > counters.cycle_max_us) counters.cycle_max_us = cycle_us;
   std::size_t bin = 0;
-  for (const std::uint32_t edge_us : kEdges_us) bin += counters.step_us >= edge_us ? 1 : 0;
-  count(counters.steps_by_time[bin]);
-  if (counters.step_us <= state_.table[Parameter::kStepBudget_us]) return;
+  for (const std::uint32_t edge_us : kEdges_us) bin += cycle_us >= edge_us ? 1 : 0;
+  count(counters.cycles_by_time[bin]);
+  if (cycle_us <= state_.table[Parameter::kCycleBudget_us]) return;
   count(counters.deadline_overruns);
   state_.faults_seen |= bit_of(Fault::kDeadline);
-  report_(EventId::kDeadlineOverrun, static_cast<std::int32_t>(counters.step_us / 1000U));
+  report_(EventId::kDeadlineOverrun, static_cast<std::int32_t>(cycle_us / 1000U));
 }
 
 void Supervisor::respond(const config::FaultRule& rule) {

@@ -1,4 +1,4 @@
-// Supervisor: measures the step, watches how long faults persist, and carries out the responses.
+// Supervisor: watches how long cycles take and how long faults persist, and carries out the responses.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@ class Supervisor {
   Supervisor(AppState& state, ModeManager& modes, ModelManager& models, const Reporter& report)
       : state_(state), modes_(modes), models_(models), report_(report) {}
 
-  // After the frames. `validity`: of this cycle's attitude; `start_ns`: when the step began, by the
-  // stopwatch; `resets_before`: the count of estimator resets after the commands.
-  void supervise(Validity validity, std::uint32_t cycle_slips, std::uint64_t start_ns,
+  // After the frames. `validity`: of this cycle's attitude; `previous_cycle_us`: that the previous cycle
+  // took, or 0; `resets_before`: the count of estimator resets after the commands.
+  void supervise(Validity validity, std::uint32_t cycle_slips, std::uint32_t previous_cycle_us,
                  std::uint32_t resets_before);
 
  private:
-  void measure(std::uint64_t start_ns);
+  void note_duration(std::uint32_t cycle_us);
   void observe(Fault fault);
   void respond(const config::FaultRule& rule);
 

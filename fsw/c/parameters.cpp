@@ -14,16 +14,11 @@ static_assert(TUMBLESIGHT_RESPONSE_SAFE == static_cast<int>(Response::kSafe));
 
 // In the order of fsw/config/parameters.inc.
 constexpr std::array<std::uint32_t tumblesight_parameters::*, kParameters> kFields{
-    &tumblesight_parameters::predicted_error_urad,
-    &tumblesight_parameters::attitude_jump_urad,
-    &tumblesight_parameters::step_budget_us,
-    &tumblesight_parameters::scrub_blocks,
-    &tumblesight_parameters::future_tolerance_us,
-    &tumblesight_parameters::max_frame_age_ms,
-    &tumblesight_parameters::longest_coast_ms,
-    &tumblesight_parameters::chaser_time_tolerance_us,
-    &tumblesight_parameters::events_of_a_kind,
-    &tumblesight_parameters::event_window_cycles,
+    &tumblesight_parameters::predicted_error_urad,      &tumblesight_parameters::attitude_jump_urad,
+    &tumblesight_parameters::cycle_budget_us,           &tumblesight_parameters::scrub_blocks,
+    &tumblesight_parameters::future_tolerance_us,       &tumblesight_parameters::max_frame_age_ms,
+    &tumblesight_parameters::longest_coast_ms,          &tumblesight_parameters::chaser_time_tolerance_us,
+    &tumblesight_parameters::events_of_a_kind,          &tumblesight_parameters::event_window_cycles,
     &tumblesight_parameters::longest_without_chaser_ms,
 };
 static_assert(kFields.back() != nullptr, "a parameter is missing here");

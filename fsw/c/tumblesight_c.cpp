@@ -82,7 +82,8 @@ void tumblesight_app::step(const tumblesight_inputs& inputs) {
   lidar.begin(inputs);
   navigation.begin(inputs);
   link.begin(inputs, outputs);
-  fsw::run_cycle(app, {lidar, link, watchdog, &navigation}, inputs.now_ns, inputs.slips, workspace);
+  fsw::run_cycle(app, {lidar, link, watchdog, stopwatch, &navigation}, inputs.now_ns, inputs.slips,
+                 workspace);
   has_stepped = true;
   packets_taken = 0;
 }

@@ -47,7 +47,7 @@ extern "C" {
 #define TUMBLESIGHT_MAX_EVENTS 16       /* per step */
 #define TUMBLESIGHT_MAX_PACKET_BYTES 1055
 #define TUMBLESIGHT_BANKS 2
-#define TUMBLESIGHT_STEP_TIME_BINS 8
+#define TUMBLESIGHT_CYCLE_TIME_BINS 8
 #define TUMBLESIGHT_DUMP_BYTES 1024
 #define TUMBLESIGHT_STORED_BYTES 256
 #define TUMBLESIGHT_KEY_SLOTS 4
@@ -125,9 +125,12 @@ struct tumblesight_settings {
   enum tumblesight_reset_cause reset_cause;
   struct tumblesight_apids apids;
   const struct tumblesight_command_keys*
-      command_keys;                        /* copied; null: the caller authenticates all commands */
-  void* context;                           /* first argument of the functions below */
-  uint64_t (*stopwatch_ns)(void* context); /* monotonic, for durations in telemetry; null: they are 0 */
+      command_keys; /* copied; null: the caller authenticates all commands */
+  void* context;    /* first argument of the functions below */
+  /* Monotonic. By it a late step cuts its registration short, so that its report is on time
+   * (cycle_budget_us), and the telemetry gives durations. Null: neither, and the results do not depend on the
+   * machine's speed. */
+  uint64_t (*stopwatch_ns)(void* context);
   /* A store that survives a reset, with two copies (0 and 1) of TUMBLESIGHT_STORED_BYTES. Both null: none.
    * Each call takes a few milliseconds at most. A write that fails must not change the other copy. */
   enum tumblesight_store_status (*read_stored)(void* context, int copy, uint8_t* bytes);
@@ -169,7 +172,7 @@ struct tumblesight_fault_rule {
 struct tumblesight_parameters {
   uint32_t predicted_error_urad;
   uint32_t attitude_jump_urad;
-  uint32_t step_budget_us;
+  uint32_t cycle_budget_us;
   uint32_t scrub_blocks;
   uint32_t future_tolerance_us;
   uint32_t max_frame_age_ms;
@@ -340,12 +343,13 @@ struct tumblesight_telemetry {
   uint32_t table_crc32;
   uint32_t inference_us;
   uint32_t inference_max_us;
-  uint32_t step_us;
-  uint32_t step_max_us;
+  uint32_t cycle_us;
+  uint32_t cycle_max_us;
   uint32_t store_us;
   uint32_t store_max_us;
-  uint32_t steps_by_time[TUMBLESIGHT_STEP_TIME_BINS];
+  uint32_t cycles_by_time[TUMBLESIGHT_CYCLE_TIME_BINS];
   uint32_t deadline_overruns;
+  uint32_t registrations_cut_short;
   uint32_t cycle_slips;
   uint32_t heap_allocations;
   uint32_t stack_left_min_bytes;

@@ -167,7 +167,7 @@ void AttitudeEstimator<N>::reset() {
 
 template <class N>
 FrameStatus AttitudeEstimator<N>::step(const RangeImage& frame, const FrameInterval& interval,
-                                       AttitudeEstimate& estimate) {
+                                       AttitudeEstimate& estimate, Deadline* deadline) {
   const DepthLoops& loops = fastest_depth_loops(network_.kernels().set);
   const FrameStatus status =
       make_depth_image(frame, model_.projection, memory_.projection(), depth_image(), loops);
@@ -176,13 +176,13 @@ FrameStatus AttitudeEstimator<N>::step(const RangeImage& frame, const FrameInter
   // That of a depth image, which returns nothing; cppcheck takes it for this function.
   // cppcheck-suppress ignoredReturnValue
   step(depth_image(), interval, estimate);
-  register_pose(frame, interval, estimate);
+  register_pose(frame, interval, deadline, estimate);
   return status;
 }
 
 template <class N>
 void AttitudeEstimator<N>::register_pose(const RangeImage& frame, const FrameInterval& interval,
-                                         AttitudeEstimate& estimate) {
+                                         [[maybe_unused]] Deadline* deadline, AttitudeEstimate& estimate) {
   if constexpr (N::kIsInteger) {
     const Motion<Real>& motion = state_.track.motion[estimate.motion_model];
     const PoseFrame pose_frame{frame,
@@ -196,7 +196,7 @@ void AttitudeEstimator<N>::register_pose(const RangeImage& frame, const FrameInt
                                motion_models_,
                                estimate.motion_model};
     track_pose({mesh_, model_.projection.target_radius_mm, model_.noise}, pose_frame, memory_.pose(),
-               screen_vertices(), state_.pose, estimate.pose);
+               screen_vertices(), state_.pose, estimate.pose, WorkBudget::kOfAFrame, deadline);
     add_pose(estimate.pose, estimate.q_lrf_trf, estimate.evidence);
     const Matrix3<Fixed> attitude = rotation_from_quaternion(estimate.q_lrf_trf);
     if (estimate.evidence.has_pose && estimate.predicted_error_urad < kPi_urad)

@@ -89,9 +89,10 @@ class AttitudeEstimator {
   void reset();
   std::uint32_t frames() const { return state_.track.frames; }  // since reset
   // Processes one frame, `interval` after the last one. On any status except kOk the frame is refused;
-  // `estimate` and the state are unchanged. Requires has_model().
+  // `estimate` and the state are unchanged. Requires has_model(). `deadline`: of the registration, or
+  // nullptr.
   [[nodiscard]] FrameStatus step(const RangeImage& frame, const FrameInterval& interval,
-                                 AttitudeEstimate& estimate);
+                                 AttitudeEstimate& estimate, Deadline* deadline = nullptr);
   // The same from a depth image (tests, training, evaluation); without a pose.
   void step(const DepthImage& image, const FrameInterval& interval, AttitudeEstimate& estimate);
   // One nominal period after the last frame, without a turn of the chaser.
@@ -125,7 +126,8 @@ class AttitudeEstimator {
   void judge(const DepthImage& image, const TrackedAttitude<Real>& tracked, AttitudeEstimate& estimate);
   // Registers the frame of `estimate`, whose depth image and mask are in use, and lets the pose judge its
   // attitude.
-  void register_pose(const RangeImage& frame, const FrameInterval& interval, AttitudeEstimate& estimate);
+  void register_pose(const RangeImage& frame, const FrameInterval& interval, Deadline* deadline,
+                     AttitudeEstimate& estimate);
 
   // Results of the stages of a frame; members, to keep the stack small.
   struct Intermediates {

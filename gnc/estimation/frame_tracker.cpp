@@ -80,7 +80,7 @@ void FrameTracker<N>::use(const FrameInputs& inputs, const FrameTrackerLimits& l
   interval.gives_up_track = is_gap || knows_chaser != track_knows_chaser;
   const bool continues_track = frames_before > 0 && !interval.gives_up_track;
   interval.rate_is_unknown = continues_track && !state.has_found_rate;
-  outcome.content = estimator_.step(frame, interval, outcome.estimate);
+  outcome.content = estimator_.step(frame, interval, outcome.estimate, inputs.deadline);
   if (outcome.content != FrameStatus::kOk) {
     outcome.verdict = FrameVerdict::kBadContent;
     return;

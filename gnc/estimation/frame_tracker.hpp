@@ -74,6 +74,7 @@ struct FrameInputs {
   const ChaserAttitude& chaser;      // at the exposure
   const ChaserAttitude& chaser_now;  // at the time of the cycle
   std::int64_t now_ns;               // time of the cycle
+  Deadline* deadline = nullptr;      // of the registration; nullptr: none
 };
 
 // Everything that is known of a frame after its step.

@@ -191,10 +191,11 @@ void advance(const PoseFrame& frame, PoseTrackerState& state) {
 }
 
 // One fit is always made: of the pose of this frame, or of a track that coasts.
-void begin_budgets(const PoseTrackerState& state, std::int32_t budget, PoseScratch& scratch) {
+void begin_budgets(const PoseTrackerState& state, std::int32_t budget, Deadline* deadline,
+                   PoseScratch& scratch) {
   const std::int32_t reserve = work_of_fit(state.history, iterations_for(state.history.count + 1));
   scratch.fit_reserve.begin(reserve);
-  scratch.refinement.budget.begin(budget);
+  scratch.refinement.budget.begin(budget, deadline);
   scratch.refinement.budget.spend(work::kFrame + reserve);
   scratch.refinement.dearest_step = 0;
   scratch.is_uncompared = false;
@@ -264,6 +265,24 @@ bool estimate_motion(const PoseFrame& frame, bool is_tracked, PoseScratch& scrat
   return true;
 }
 
+// Registers the frame and fits the motion of the track. Without a surface or a view of it the track ends.
+void estimate_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
+                   PoseTrackerState& state, PoseEstimate& estimate) {
+  bool is_tracked = state.history.count >= kTrackedPoses;
+  if (!view_target(target, frame, is_tracked, scratch, state)) {
+    forget_track(state);
+    return;
+  }
+  const std::int32_t llr_before_q8 = state.llr_q8;
+  is_tracked = register_frame(target, frame, is_tracked, scratch, state, estimate);
+  if (!estimate_motion(frame, is_tracked, scratch, state, estimate)) return;
+  if (!tells_rate(state.history)) estimate.doubts |= kPoseMotion;
+  if (llr_before_q8 - state.llr_q8 > kMostAgainstTrack_q8) estimate.doubts |= kPoseAmbiguous;
+  estimate.poses = state.history.count;
+  estimate.state = pose_state(state.motion);
+  estimate.doubts |= doubts_of(frame, state.motion.turning.r_lrf_trf, estimate);
+}
+
 }  // namespace
 
 PoseState pose_state(const PoseMotion& motion) {
@@ -286,25 +305,14 @@ PoseMotion later_pose(const PoseTrackerState& state, const MotionModels<Fixed>& 
 
 void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
                 ScreenVertices& vertices, PoseTrackerState& state, PoseEstimate& estimate,
-                std::int32_t budget) {
+                std::int32_t budget, Deadline* deadline) {
   estimate = {};
   scratch.refinement.surface.vertices = &vertices;
   limit_damage(state);
   advance(frame, state);
-  begin_budgets(state, budget, scratch);
-  bool is_tracked = state.history.count >= kTrackedPoses;
-  if (!view_target(target, frame, is_tracked, scratch, state)) {
-    forget_track(state);
-    return;
-  }
-  const std::int32_t llr_before_q8 = state.llr_q8;
-  is_tracked = register_frame(target, frame, is_tracked, scratch, state, estimate);
-  if (!estimate_motion(frame, is_tracked, scratch, state, estimate)) return;
-  if (!tells_rate(state.history)) estimate.doubts |= kPoseMotion;
-  if (llr_before_q8 - state.llr_q8 > kMostAgainstTrack_q8) estimate.doubts |= kPoseAmbiguous;
-  estimate.poses = state.history.count;
-  estimate.state = pose_state(state.motion);
-  estimate.doubts |= doubts_of(frame, state.motion.turning.r_lrf_trf, estimate);
+  begin_budgets(state, budget, deadline, scratch);
+  estimate_pose(target, frame, scratch, state, estimate);
+  estimate.is_cut_short = scratch.refinement.budget.is_late();
 }
 
 }  // namespace tumblesight::gnc

@@ -31,8 +31,8 @@ inline constexpr PoseDoubts kPoseCoasts = 2;   // predicted: the frame could not
 inline constexpr PoseDoubts kPoseRanges = 4;   // the ranges do not lie on the surface
 // Returns beside the surface, too many missing, or its silhouette elsewhere.
 inline constexpr PoseDoubts kPoseOutline = 8;
-// The conservative log-likelihood ratio is small, another attitude explains this frame better, or the work
-// budget did not cover the registration or its comparison with another attitude.
+// The conservative log-likelihood ratio is small, another attitude explains this frame better, or work budget
+// or deadline did not allow for the registration or its comparison with another attitude.
 inline constexpr PoseDoubts kPoseAmbiguous = 16;
 // Fewer than three poses, they contradict one motion, or they are too far apart to tell the rate.
 inline constexpr PoseDoubts kPoseMotion = 32;
@@ -56,6 +56,7 @@ struct PoseEstimate {
   std::int32_t conservative_llr_q8 = 0;  // over the alternatives, as far as it is proven [nats]
   std::int64_t disagreement_q8 = 0;      // PoseFitResult
   int poses = 0;                         // that the motion was fitted to
+  bool is_cut_short = false;             // the deadline passed before all of the frame's work was done
 
   bool is_known() const { return (doubts & kPoseUnknown) == 0; }
   bool is_verified() const { return doubts == 0; }
@@ -66,9 +67,11 @@ PoseMotion later_pose(const PoseTrackerState& state, const MotionModels<Fixed>& 
                       std::int64_t elapsed_ns, const Matrix3<Fixed>& r_now_last);
 
 // Advances the track to a frame. `state` of a new track: PoseTrackerState(). A frame whose registration
-// exhausts `budget` counts as one that could not be registered.
+// exhausts `budget` before it has a pose counts as one that could not be registered. So does one that has
+// none at `deadline`, if that is not nullptr. After the deadline at most kBetweenLooks and one charge are
+// spent, and the one fit that every frame makes.
 void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
                 ScreenVertices& vertices, PoseTrackerState& state, PoseEstimate& estimate,
-                std::int32_t budget = WorkBudget::kOfAFrame);
+                std::int32_t budget = WorkBudget::kOfAFrame, Deadline* deadline = nullptr);
 
 }  // namespace tumblesight::gnc

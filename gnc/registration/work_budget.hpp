@@ -7,6 +7,9 @@
 // A frame needs the registration at its first poses. If the budget does not cover it, the frame counts as one
 // that could not be registered. All else is begun only if the budget is expected to cover it. A part that
 // exceeds the budget after all is not used.
+//
+// A deadline that passes exhausts the budget, too. Only a caller that gives one makes the registration depend
+// on time.
 #pragma once
 
 #include <cstdint>
@@ -48,23 +51,46 @@ inline constexpr std::int32_t kFitPose = 245'000, kFitPeriod = 222'000, kIterati
 
 }  // namespace work
 
+// Until when the registration of a frame may go on.
+class Deadline {
+ public:
+  virtual bool has_passed() = 0;
+
+ protected:
+  ~Deadline() = default;
+};
+
 class WorkBudget {
  public:
   static constexpr std::int32_t kOfAFrame = 95'000'000;
-  // What is charged afterwards exceeds the budget by one triangle or edge at most.
+  // What is charged afterwards exceeds the budget by one triangle or edge at most. No charge is larger.
   static constexpr std::int32_t kMostBeyond = 2'000'000;
 
-  // Before this call the budget is larger than any frame needs.
-  void begin(std::int32_t budget) { left_ = max(budget, 0); }
+  // The deadline is asked for at the beginning, and again each time that so much has been spent: about 10 ms
+  // on LEON3 at 100 MHz.
+  static constexpr std::int32_t kBetweenLooks = 1'000'000;
+
+  // Before this call the budget is larger than any frame needs. `deadline`: must stay valid as long as work is
+  // spent, or nullptr.
+  void begin(std::int32_t budget, Deadline* deadline = nullptr) {
+    left_ = max(budget, 0);
+    since_look_ = kBetweenLooks;
+    deadline_ = deadline;
+    is_late_ = false;
+  }
   // False: not enough is left, and the budget is exhausted from now on. Most work is charged before it is
   // begun.
   bool spend(std::int32_t work) {
     left_ = work > left_ ? kExhausted : left_ - work;
+    if (deadline_ != nullptr) {
+      since_look_ += work;
+      if (since_look_ >= kBetweenLooks) look_at_deadline();
+    }
     return !is_exhausted();
   }
-  // What was held back and not taken. An exhausted budget remains so.
+  // What was held back and not taken. A budget that is exhausted or late remains so.
   void give_back(std::int32_t work) {
-    if (!is_exhausted()) left_ += work;
+    if (!is_exhausted() && !is_late_) left_ += work;
   }
   bool covers(std::int64_t work) const { return work <= left_; }
   // After a part that the frame can do without, which began with a budget that was not exhausted. If the part
@@ -75,11 +101,17 @@ class WorkBudget {
     return was_covered;
   }
   bool is_exhausted() const { return left_ == kExhausted; }
+  bool is_late() const { return is_late_; }  // the deadline has passed
   std::int32_t left() const { return max(left_, 0); }
 
  private:
+  void look_at_deadline();
+
   static constexpr std::int32_t kExhausted = -1;
   std::int32_t left_ = 0x7FFF'FFFF;
+  std::int32_t since_look_ = 0;
+  Deadline* deadline_ = nullptr;
+  bool is_late_ = false;
 };
 
 }  // namespace tumblesight::gnc

@@ -18,7 +18,7 @@ constexpr bool is_value_of(int constant, Enum value) {
 static_assert(tumblesight_icd_COMMAND_BYTES == CommandPacket::kMaxBytes);
 static_assert(tumblesight_icd_DUMP_BYTES == MemoryDump::kMaxBytes);
 static_assert(tumblesight_icd_REFUSALS == kCommandRefusals);
-static_assert(tumblesight_icd_STEP_TIME_BINS == Telemetry::kStepTimeBins);
+static_assert(tumblesight_icd_CYCLE_TIME_BINS == Telemetry::kCycleTimeBins);
 static_assert(tumblesight_icd_BANKS == Telemetry::kBanks);
 static_assert(tumblesight_icd_COMMAND_APID == kCommandApid);
 static_assert(is_value_of(tumblesight_icd_MODE_STANDBY, Mode::kStandby));

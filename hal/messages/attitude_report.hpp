@@ -43,7 +43,7 @@ inline constexpr std::uint8_t kPoseDoubtRanges = 4;
 inline constexpr std::uint8_t kPoseDoubtOutline = 8;
 // The proven advantage over other attitudes is less than 8 nats: one explains the frames about as well, none
 // could be compared fairly, or the track is too new. Or another attitude explains this frame better by more
-// than 6 nats, or the budget did not cover the registration or its comparison.
+// than 6 nats, or budget or deadline did not allow for the registration or its comparison.
 inline constexpr std::uint8_t kPoseDoubtAmbiguous = 16;
 // There are fewer than three poses, they or the newest of them do not follow one motion, or no two
 // consecutive ones are within 7.5 s, so that the rate may be one turn more or less.

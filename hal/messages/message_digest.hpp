@@ -29,12 +29,13 @@ inline Telemetry without_timing(Telemetry telemetry) {
   // Measured by the stopwatch.
   telemetry.inference_us = none.inference_us;
   telemetry.inference_max_us = none.inference_max_us;
-  telemetry.step_us = none.step_us;
-  telemetry.step_max_us = none.step_max_us;
+  telemetry.cycle_us = none.cycle_us;
+  telemetry.cycle_max_us = none.cycle_max_us;
   telemetry.store_us = none.store_us;
   telemetry.store_max_us = none.store_max_us;
-  telemetry.steps_by_time = none.steps_by_time;
+  telemetry.cycles_by_time = none.cycles_by_time;
   telemetry.deadline_overruns = none.deadline_overruns;
+  telemetry.registrations_cut_short = none.registrations_cut_short;
   telemetry.cycle_slips = none.cycle_slips;
   // Measured by the platform, where it can.
   telemetry.heap_allocations = none.heap_allocations;

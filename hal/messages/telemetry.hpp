@@ -17,7 +17,7 @@ namespace tumblesight::hal {
 // The same fields in the same order as struct Telemetry of hal/dds/idl/tumblesight.idl, which has run_id and
 // k before them; tests/documents/icd.py compares both.
 struct Telemetry {
-  static constexpr int kStepTimeBins = 8;
+  static constexpr int kCycleTimeBins = 8;
   static constexpr int kBanks = 2;
 
   std::int64_t time_ns = 0;  // cycle time
@@ -82,14 +82,15 @@ struct Telemetry {
 
   std::uint32_t inference_us = 0;  // last step of the estimator, by the stopwatch; not in any digest
   std::uint32_t inference_max_us = 0;
-  // this step, without the vote before it, the store's time at its end and the telemetry
-  std::uint32_t step_us = 0;
-  std::uint32_t step_max_us = 0;
+  // the previous cycle, from before it received until all was published; 0: not measured
+  std::uint32_t cycle_us = 0;
+  std::uint32_t cycle_max_us = 0;
   std::uint32_t store_us = 0;  // checks and writes of the stored state at the end of this step
   std::uint32_t store_max_us = 0;
-  // steps shorter than 1, 3, 10, 30, 100, 300 and 1000 ms, and all longer ones
-  std::array<std::uint32_t, kStepTimeBins> steps_by_time{};
-  std::uint32_t deadline_overruns = 0;
+  // cycles shorter than 1, 3, 10, 30, 100, 300 and 1000 ms, and all longer ones
+  std::array<std::uint32_t, kCycleTimeBins> cycles_by_time{};
+  std::uint32_t deadline_overruns = 0;        // cycles longer than their budget
+  std::uint32_t registrations_cut_short = 0;  // by the deadline, so that the report was on time
   std::uint32_t cycle_slips = 0;
   std::uint32_t heap_allocations = 0;  // of the flight task since init, where the platform counts them
   // of the flight task's stack, never used since start; 0: the platform does not measure it

@@ -299,7 +299,7 @@ Json row_of(const LoggedStep& step, double seconds) {
   }
   const hal::Telemetry& t = *step.telemetry;
   for (const Json& number :
-       {Json(1e-3 * t.step_us), Json(1e-3 * t.inference_us), Json(t.frames_used), Json(t.frames_refused),
+       {Json(1e-3 * t.cycle_us), Json(1e-3 * t.inference_us), Json(t.frames_used), Json(t.frames_refused),
         Json(t.frames_missing), Json(t.frames_repeated), Json(t.commands_accepted), Json(t.commands_refused),
         Json(t.events), Json(static_cast<int>(t.mode)), Json(t.faults_persisting), Json(t.bank_in_use),
         Json(step.k)})

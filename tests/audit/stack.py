@@ -5,6 +5,9 @@ import sys
 # The functions that a call through a pointer can reach: the kernels of an instruction set and the platform's stopwatch.
 _INDIRECT = re.compile(r"kernels.*(convolve|multiply|product|max_pool|average_pool)|survey_of|sum_all_depths|accumulate_all|encode_all"
                        r"|Stopwatch.*now_ns")
+# The one function that asks the deadline, and what it reaches: that looks at the stopwatch, through a pointer again.
+_ASKS_DEADLINE = re.compile(r"WorkBudget::look_at_deadline")
+_DEADLINE = re.compile(r"Deadline::has_passed")
 _STEP = re.compile(r"AttitudeInitApp::step\(")
 _LIBRARIES = {"fixed": "fsw_app.dir", "float32": "fsw_app_float32.dir"}  # of the application, by its numerics
 # The C interface, which the audited programs are not linked with. Its stopwatch calls its caller's function through a pointer.
@@ -46,6 +49,7 @@ def worst_case(build, numerics):
     """(bytes, the functions on the deepest path) of AttitudeInitApp::step()."""
     own, callees, names = read_graph(build, numerics)
     indirect = [function for function, name in names.items() if _INDIRECT.search(name) or _INDIRECT.search(function)]
+    deadlines = [function for function, name in names.items() if _DEADLINE.search(name)]
     depth, path = {}, {}
 
     def visit(function, above):
@@ -54,8 +58,9 @@ def worst_case(build, numerics):
         if function in depth:
             return depth[function]
         targets = set()
+        by_pointer = deadlines if _ASKS_DEADLINE.search(names.get(function, "")) else indirect
         for target in callees.get(function, ()):
-            targets.update(indirect if target == "__indirect_call" else (target,))
+            targets.update(by_pointer if target == "__indirect_call" else (target,))
         below, deepest = 0, None
         for target in sorted(targets):
             size = visit(target, above | {function})

@@ -130,6 +130,16 @@ class WorstCaseStack(unittest.TestCase):
                 pathlib.Path(folder, library, "a.ci").write_text(text)
             self.assertEqual(stack.worst_case(pathlib.Path(folder), "fixed")[0], 100)
 
+    # The deadline of registration looks at the stopwatch: two calls through pointers, one below the other.
+    def test_only_the_work_budget_reaches_the_deadline(self):
+        nodes = [("step", self.STEP, 100), ("conv", "kernels::convolve()", 300), ("look", "void gnc::WorkBudget::look_at_deadline()", 30),
+                 ("passed", "virtual bool fsw::CycleDeadline::has_passed()", 40), ("clock", "BoardStopwatch::now_ns()", 500)]
+        edges = [("step", "look"), ("look", "__indirect_call"), ("passed", "__indirect_call")]
+        total, path = self.of(edges, nodes)
+        self.assertEqual(total, 100 + 30 + 40 + 500)
+        self.assertEqual([name for name, _ in path][-1], "BoardStopwatch::now_ns()")
+        self.assertEqual(self.of([("step", "__indirect_call"), ("passed", "__indirect_call")], nodes)[0], 100 + 500)
+
     # Verifies TS-MEM-040.
     def test_refuses_recursion(self):
         with self.assertRaises(SystemExit):

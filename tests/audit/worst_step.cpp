@@ -284,7 +284,7 @@ void step(const char* name, int periods = 1) {
   now_ns += periods * config::kFramePeriod_ns;
   lidar.prepare(now_ns);
   tumblesight_step_begins();
-  run_cycle(app, {lidar, command_link, watchdog, &navigation}, now_ns, 0, workspace);
+  run_cycle(app, {lidar, command_link, watchdog, stopwatch, &navigation, false}, now_ns, 0, workspace);
   tumblesight_step_ended();
   command_link.clear();
 }

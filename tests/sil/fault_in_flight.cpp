@@ -1,7 +1,8 @@
 // A library that tests preload into the flight program to cause a fault that no input can cause.
 // TUMBLESIGHT_FAULT selects it. "heap": the flight task allocates each time that it reports the end of a
 // cycle, which is after the cycle's telemetry. "thread": the program itself gets no thread; its libraries do.
-// "stop at exec": SIGTERM just before the program replaces itself with another one.
+// "stop at exec": SIGTERM just before the program replaces itself with another one. "slow": the flight task
+// takes 8 ms each time that it looks at its clock, as on a slow processor.
 #include <dlfcn.h>
 #include <errno.h>
 #include <pthread.h>
@@ -9,6 +10,8 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
 namespace {
 
@@ -49,6 +52,14 @@ int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*
   static const auto create = original<Create>("pthread_create");
   if (fault_is("thread") && is_of_flight(reinterpret_cast<const void*>(run))) return EAGAIN;
   return create(thread, attributes, run, argument);
+}
+
+int clock_gettime(clockid_t clock, timespec* time) noexcept {
+  static const auto get = original<int (*)(clockid_t, timespec*)>("clock_gettime");
+  static const bool is_slow = fault_is("slow");
+  const bool is_other_thread = gettid() != getpid();
+  if (is_slow && is_other_thread && is_of_flight(__builtin_return_address(0))) usleep(8000);
+  return get(clock, time);
 }
 
 int execv(const char* path, char* const arguments[]) noexcept {

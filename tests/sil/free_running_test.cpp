@@ -1,5 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "fsw/config/parameters.hpp"
+#include "gnc/attitude/quaternion.hpp"
+#include "sim/sil/simulated_steps.hpp"
 #include "tests/sil/sil_test_support.hpp"
 
 namespace tumblesight::sim {
@@ -52,6 +57,87 @@ TEST(FreeRunning, MissingAttitudeOfTheLastFrameIsCountedAsMissed) {
   ASSERT_EQ(recording.steps.size(), 5U);
   EXPECT_FALSE(recording.steps.back().answered);
   EXPECT_GE(recording.steps_missed, 1U);
+}
+
+// Verifies TS-TIM-070, TS-TIM-130.
+// Nothing here is faster than in flight: a busy machine has half a period to spare.
+TEST(FreeRunning, AtThePeriodOfFlightEveryReportIsOnTime) {
+  SilSettings settings = test::shipped_settings();
+  settings.free_running = true;
+  settings.speed = 1.0;
+  const std::vector<Sequence> sequences{make_sequence({Condition::kNominal, 8}, 1, 0)};
+  const SilRunResult run = run_sil(settings, test::lidar(), test::kSwath_m, sequences, {});
+  EXPECT_EQ(run.failure, "");
+  EXPECT_EQ(run.steps_missed, 0U);
+  ASSERT_EQ(run.steps.size(), 8U);
+  const hal::Telemetry& telemetry = run.steps.back().telemetry;
+  EXPECT_GT(telemetry.cycle_max_us, 100U);
+  EXPECT_LT(telemetry.cycle_max_us, 1'350'000U);
+  EXPECT_EQ(telemetry.deadline_overruns, 0U);
+  EXPECT_EQ(telemetry.registrations_cut_short, 0U);
+  EXPECT_EQ(telemetry.cycle_slips, 0U);
+  EXPECT_EQ(telemetry.heap_allocations, 0U);
+  EXPECT_EQ(run.steps.back().attitude.pose_doubts, 0) << "verified";
+}
+
+// The steps of another source, with a telecommand in the first one.
+class WithTelecommand final : public StepSource {
+ public:
+  WithTelecommand(StepSource& source, const Telecommand& command) : source_(source), command_(command) {}
+  std::uint32_t steps() const override { return source_.steps(); }
+  std::int64_t time_ns(std::uint32_t k) const override { return source_.time_ns(k); }
+  SourcedStep next() override {
+    SourcedStep step = source_.next();
+    if (count_++ == 0) step.input.commands.push_back(command_);
+    return step;
+  }
+
+ private:
+  StepSource& source_;
+  Telecommand command_;
+  int count_ = 0;
+};
+Telecommand set_cycle_budget(std::uint32_t budget_us) {
+  const auto byte = [budget_us](int shift) { return static_cast<std::uint8_t>(budget_us >> shift); };
+  return {hal::FunctionCode::kSetParameter,
+          {static_cast<std::uint8_t>(fsw::Parameter::kCycleBudget_us), byte(24), byte(16), byte(8), byte(0)}};
+}
+
+// Verifies TS-TIM-130.
+// On a processor whose registration takes longer than its period, the network's attitudes come on time.
+// Without the deadline a frame takes some 300 ms.
+TEST(FreeRunning, OnASlowProcessorTheRegistrationIsCutShortAndTheReportsAreOnTime) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer must be loaded before any other library";
+#endif
+  const test::Environment preload("LD_PRELOAD", TUMBLESIGHT_FAULT_IN_FLIGHT);
+  const test::Environment fault("TUMBLESIGHT_FAULT", "slow");
+  SilSettings settings = test::shipped_settings();
+  settings.free_running = true;
+  settings.speed = 13.5;  // a period of 200 ms
+  const std::vector<Sequence> sequences = test::sequences(2, 1);
+  SimulatedSteps simulated(test::lidar(), test::kSwath_m, sequences, false);
+  WithTelecommand source(simulated, set_cycle_budget(100'000));
+  const SilRunResult run = run_sil(settings, source, {});
+  EXPECT_EQ(run.failure, "");
+  EXPECT_LE(run.steps_missed, 2U) << "a busy machine may lose a cycle or two";
+  constexpr double k20Degrees_rad = 20.0 * M_PI / 180.0;
+  std::uint32_t late = 0, right = 0, answered = 0;
+  for (const StepResult& step : run.steps) {
+    if (!step.answered || step.frame_index == 0) continue;
+    ++answered;
+    EXPECT_NE(step.attitude.pose_doubts, 0) << "not verified";
+    const double error_rad = gnc::to_double(step.attitude.q_lrf_trf).angularDistance(step.truth.q_lrf_trf);
+    right += error_rad < k20Degrees_rad ? 1 : 0;
+    for (const hal::Event& event : step.events)
+      late += event.id == hal::EventId::kRegistrationCutShort ? 1 : 0;
+  }
+  const hal::Telemetry& last = run.steps.back().telemetry;
+  EXPECT_GE(last.registrations_cut_short, 16U);
+  EXPECT_GE(late, 8U) << "at most eight of a kind in 16 cycles";
+  EXPECT_LE(last.cycle_slips, 2U);
+  EXPECT_GE(right, answered - 2);
+  EXPECT_EQ(run.flight_heap_allocations, 0U);
 }
 
 TEST(FreeRunning, NeedsASpeed) {

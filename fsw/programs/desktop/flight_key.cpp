@@ -27,28 +27,40 @@ int hex_value(int digit) {
   return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 
-// Returns whether the file holds exactly kDigits digits.
-bool read_digits(std::FILE* file, hal::CommandKey& key) {
-  std::size_t digits = 0;
-  for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) {
-    if (std::isspace(c) != 0) continue;
-    const int value = hex_value(c);
-    if (value < 0 || digits == kDigits) return false;
-    std::uint8_t& byte = key[digits / 2];
-    byte = static_cast<std::uint8_t>(byte << 4 | value);
-    ++digits;
-  }
-  return digits == kDigits;
-}
-
 // A pipe gives its content once, as the shell's <(command) does.
 bool is_written(int pipe) {
   pollfd waiting{pipe, POLLIN, 0};
   return poll(&waiting, 1, kLongestWait_ms) > 0;
 }
 
-// Null, with the reason, if it is neither a regular file nor a pipe that somebody writes.
-std::FILE* opened(const char* path, const char*& reason) {
+// 1: `byte` is the next one; 0: the file has ended; -1: it cannot be read.
+ssize_t read_byte(int file, unsigned char& byte) {
+  ssize_t count = 0;
+  do {
+    count = read(file, &byte, 1);
+  } while (count < 0 && (errno == EINTR || (errno == EAGAIN && is_written(file))));
+  return count;
+}
+
+// Returns whether the file holds exactly kDigits digits. Not by stdio, which would use the heap.
+bool read_digits(int file, hal::CommandKey& key) {
+  std::size_t digits = 0;
+  for (off_t i = 0; i <= kMostBytes; ++i) {
+    unsigned char byte = 0;
+    const ssize_t count = read_byte(file, byte);
+    if (count <= 0) return count == 0 && digits == kDigits;
+    if (std::isspace(byte) != 0) continue;
+    const int value = hex_value(byte);
+    if (value < 0 || digits == kDigits) return false;
+    std::uint8_t& target = key[digits / 2];
+    target = static_cast<std::uint8_t>(target << 4 | value);
+    ++digits;
+  }
+  return false;
+}
+
+// -1, with the reason, if it is neither a regular file nor a pipe that somebody writes.
+int opened(const char* path, const char*& reason) {
   const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   struct stat found {};
   if (file < 0 || fstat(file, &found) != 0) {
@@ -60,10 +72,10 @@ std::FILE* opened(const char* path, const char*& reason) {
   } else if (found.st_size > kMostBytes) {
     reason = "it has more than 4096 bytes, and a key has 64 hexadecimal digits: is it another file?";
   } else {
-    return fdopen(file, "r");
+    return file;
   }
   if (file >= 0) (void)close(file);
-  return nullptr;
+  return -1;
 }
 
 }  // namespace
@@ -77,15 +89,15 @@ bool read_command_key(const char* path, hal::CommandKey& key) {
                  kProgramName);
     return true;
   }
-  const char* reason = "no memory";
-  std::FILE* const file = opened(path, reason);
-  if (file == nullptr) {
+  const char* reason = "";
+  const int file = opened(path, reason);
+  if (file < 0) {
     std::fprintf(stderr, "%s: --command-key %s: %s\n", kProgramName, path, reason);
     return false;
   }
   hal::CommandKey read{};
   const bool complete = read_digits(file, read);
-  std::fclose(file);
+  (void)close(file);
   if (complete) {
     key = read;
   } else {

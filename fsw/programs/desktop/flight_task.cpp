@@ -42,8 +42,14 @@ std::int64_t MissionClock::at(std::int64_t release_ns) const {
 }
 
 FlightTask::FlightTask(hal::dds::DdsLidar& lidar, hal::dds::DdsNavigation& navigation,
-                       hal::dds::DdsLink& link, CycleWorkspace& workspace, hal::posix::MonitoredStack& stack)
-    : lidar_(lidar), navigation_(navigation), link_(link), workspace_(workspace), stack_(stack) {
+                       hal::dds::DdsLink& link, hal::Stopwatch& stopwatch, CycleWorkspace& workspace,
+                       hal::posix::MonitoredStack& stack)
+    : lidar_(lidar),
+      navigation_(navigation),
+      link_(link),
+      stopwatch_(stopwatch),
+      workspace_(workspace),
+      stack_(stack) {
   sem_init(&go_, 0, 0);
   sem_init(&done_, 0, 0);
 }
@@ -115,7 +121,8 @@ void FlightTask::run_on_timer() {
 
 void FlightTask::cycle(std::uint32_t k, std::int64_t now_ns, std::uint32_t slips) {
   link_.begin_cycle(run_id_, k);
-  fsw::run_cycle(*app_, {lidar_, link_, watchdog_, &navigation_}, now_ns, slips, workspace_);
+  fsw::run_cycle(*app_, {lidar_, link_, watchdog_, stopwatch_, &navigation_, free_running_}, now_ns, slips,
+                 workspace_);
   link_.end_cycle(app_->state_crc32());
 }
 

@@ -15,6 +15,7 @@
 #include "hal/dds/dds_link.hpp"
 #include "hal/dds/dds_navigation.hpp"
 #include "hal/posix/monitored_stack.hpp"
+#include "hal/stopwatch.hpp"
 #include "hal/task.hpp"
 
 namespace tumblesight::fsw::desktop {
@@ -33,11 +34,12 @@ struct MissionClock {
 class FlightTask {
  public:
   FlightTask(hal::dds::DdsLidar& lidar, hal::dds::DdsNavigation& navigation, hal::dds::DdsLink& link,
-             CycleWorkspace& workspace, hal::posix::MonitoredStack& stack);
+             hal::Stopwatch& stopwatch, CycleWorkspace& workspace, hal::posix::MonitoredStack& stack);
 
   // Starts the thread and returns when it is ready; false if the system provides no thread. A free-running
   // task requests a fixed priority and locked memory, which takes longer than a cycle: start it before the
-  // run.
+  // run. Only a free-running task keeps the deadline of its cycles: a run in lockstep gives the same results
+  // on any machine.
   [[nodiscard]] bool start(AttitudeInitApp& app, bool free_running);
   // Call it before the first cycle: telemetry carries the run id.
   void set_run_id(std::uint32_t run_id) { run_id_ = run_id; }
@@ -73,6 +75,7 @@ class FlightTask {
   hal::dds::DdsLidar& lidar_;
   hal::dds::DdsNavigation& navigation_;
   hal::dds::DdsLink& link_;
+  hal::Stopwatch& stopwatch_;
   CycleWorkspace& workspace_;
   hal::posix::MonitoredStack& stack_;
   // Written before go_ is posted for the first cycle.

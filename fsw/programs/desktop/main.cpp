@@ -43,7 +43,7 @@ fsw::AttitudeInitApp app;
 hal::CommandKeys command_keys;
 hal::posix::FilePersistentStore stored_state;
 fsw::CycleWorkspace workspace;
-FlightTask task{lidar, navigation, link, workspace, stack};
+FlightTask task{lidar, navigation, link, stopwatch, workspace, stack};
 hal::dds::Foreigner foreigner;  // who ended the run
 
 hal::Platform platform_of(const FlightOptions& options, hal::ModelStore& models) {

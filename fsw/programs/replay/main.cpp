@@ -103,7 +103,7 @@ int run() {
     const std::int64_t now_ns = recording.next_exposure_time_ns();
     lidar.advance_to(now_ns);
     link.announce(recording.next_sequence_number());
-    run_cycle(app, {lidar, link, watchdog, &navigation}, now_ns, 0, workspace);
+    run_cycle(app, {lidar, link, watchdog, stopwatch, &navigation, false}, now_ns, 0, workspace);
     link.digest(app.state_crc32());
   }
   if (!recording.was_read()) return fail("recording", "a frame is damaged");

@@ -1,7 +1,7 @@
 # Checks with nm the symbols that the flight libraries need from outside.
-#   cmake -DNM=<nm> -DLIBRARIES=<a.a;b.a> [-DMUST_CATCH=<symbol;...>] -P check_symbols.cmake
-# Fails if a symbol is forbidden on the flight side. With MUST_CATCH it passes only if every symbol named there is caught:
-# this tests the check itself.
+#   cmake -DNM=<nm> -DLIBRARIES=<a.a;b.o> [-DONLY_HEAP=ON] [-DMUST_CATCH=<symbol;...>] -P check_symbols.cmake
+# Fails if a symbol is forbidden on the flight side. With ONLY_HEAP it looks for the heap only: platforms and programs may
+# use their system. With MUST_CATCH it passes only if every symbol named there is caught: this tests the check itself.
 
 cmake_minimum_required(VERSION 3.25)
 
@@ -11,7 +11,9 @@ set(allowed "^(memcpy|memmove|memset|memcmp|strlen|strcmp|strncmp|sqrtf?|abort)$
   "^(__stack_chk_fail|__assert_fail|_GLOBAL_OFFSET_TABLE_|__dso_handle|__cpu_model|__cpu_features2|__cpu_indicator_init)$"
   "^__(asan|ubsan|tsan|sanitizer|gcov|gcc_personality)_")
 # Forbidden even if the library defines them itself.
-set(never "^_ZT[IS]" "^(malloc|calloc|realloc|free|aligned_alloc|posix_memalign)$" "^_Zn[aw]" "^_Zd[al]" "^__cxa_"
+set(heap "^(malloc|calloc|realloc|free|aligned_alloc|posix_memalign)$" "^_Zn[aw]" "^_Zd[al]"
+  "^_?_?(strn?dup|v?asprintf|f?open_?memstream|f(d|re)?open|tmpfile|getline|getdelim|(fd)?opendir|scandir|realpath|dlopen)(64)?$")
+set(never ${heap} "^_ZT[IS]" "^__cxa_"
   "^_?_?(v?f?s?n?printf|puts|putchar|fwrite|fputs)" "^dds_"
   "^_?_?(exp|exp2|expm1|log|log2|log10|log1p|pow|sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|cbrt|hypot|erf|fmod)[fl]?(_finite)?$")
 
@@ -24,6 +26,11 @@ function(matches_any symbol result)
     endif()
   endforeach()
 endfunction()
+
+set(forbidden_symbols ${never})
+if(ONLY_HEAP)
+  set(forbidden_symbols ${heap})
+endif()
 
 set(defined_somewhere "")
 set(all_lines "")
@@ -47,7 +54,7 @@ foreach(line IN LISTS all_lines)
   set(symbol ${CMAKE_MATCH_1})
   set(kind ${CMAKE_MATCH_2})
   math(EXPR looked_at "${looked_at} + 1")
-  matches_any("${symbol}" forbidden ${never})
+  matches_any("${symbol}" forbidden ${forbidden_symbols})
   if(forbidden)
     list(APPEND caught ${symbol})
   elseif(kind MATCHES "^[Uw]$")
@@ -63,12 +70,14 @@ endif()
 # A symbol that one of the libraries needs from another one is checked there.
 list(REMOVE_DUPLICATES undefined)
 list(REMOVE_ITEM undefined ${defined_somewhere})
-foreach(symbol IN LISTS undefined)
-  matches_any("${symbol}" fine ${allowed})
-  if(NOT fine)
-    list(APPEND caught ${symbol})
-  endif()
-endforeach()
+if(NOT ONLY_HEAP)
+  foreach(symbol IN LISTS undefined)
+    matches_any("${symbol}" fine ${allowed})
+    if(NOT fine)
+      list(APPEND caught ${symbol})
+    endif()
+  endforeach()
+endif()
 list(REMOVE_DUPLICATES caught)
 
 if(DEFINED MUST_CATCH)

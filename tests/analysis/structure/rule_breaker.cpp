@@ -20,6 +20,7 @@ void* break_the_rules(int size) {
   if (size < 0) throw size;
   void* block = std::malloc(static_cast<std::size_t>(size));
   std::free(block);
+  if (std::fopen("", "r") == nullptr) std::printf("none\n");
   (void)dds_write(something_from_elsewhere(size), block);
   return new int[static_cast<std::size_t>(size)];
 }

@@ -15,7 +15,7 @@ class Cycle : public AppFixture {
   Cycle() : workspace(std::make_unique<CycleWorkspace>()) { init_with_model(); }
   void run(std::uint32_t slips = 0) {
     now_ns = next_time_ns();
-    run_cycle(*app, {lidar, link, watchdog, &navigation}, now_ns, slips, *workspace);
+    run_cycle(*app, {lidar, link, watchdog, stopwatch, &navigation}, now_ns, slips, *workspace);
   }
   Validity last_validity() const { return link.attitudes.back().validity; }
 
@@ -60,6 +60,52 @@ TEST_F(Cycle, MissedReleasesAreCountedAndReported) {
   EXPECT_EQ(link.telemetry.back().cycle_slips, 3U);
   EXPECT_EQ(link.events.back().id, EventId::kCycleSlipped);
   EXPECT_TRUE(hal::depends_on_wall_clock(link.events.back().id));
+}
+
+// A link and a sensor that take their time.
+class SlowLink final : public hal::Link {
+ public:
+  explicit SlowLink(hal::fake::FakeStopwatch& stopwatch) : stopwatch_(stopwatch) {}
+  bool receive(hal::CommandPacket&) override { return false; }
+  void publish(const hal::AttitudeReport&) override { stopwatch_.time_ns += 700'000'000; }
+  void publish(const hal::Telemetry& sample) override { telemetry = sample; }
+  void publish(const hal::Event&) override {}
+  void publish(const hal::MemoryDump&) override {}
+  hal::Telemetry telemetry;
+
+ private:
+  hal::fake::FakeStopwatch& stopwatch_;
+};
+class SlowLidar final : public hal::Lidar {
+ public:
+  explicit SlowLidar(hal::fake::FakeStopwatch& stopwatch) : stopwatch_(stopwatch) {}
+  hal::LidarStatus receive(gnc::RangeImage&) override {
+    stopwatch_.time_ns += 30'000'000;
+    return hal::LidarStatus::kNoFrame;
+  }
+
+ private:
+  hal::fake::FakeStopwatch& stopwatch_;
+};
+
+// Verifies TS-TLM-050.
+TEST_F(Cycle, IsMeasuredFromBeforeItReceivesUntilAllIsPublished) {
+  SlowLink slow_link(stopwatch);
+  SlowLidar slow_lidar(stopwatch);
+  const auto run_slowly = [&] {
+    now_ns = next_time_ns();
+    run_cycle(*app, {slow_lidar, slow_link, watchdog, stopwatch}, now_ns, 0, *workspace);
+    return slow_link.telemetry;
+  };
+  EXPECT_EQ(run_slowly().cycle_us, 0U) << "there is no cycle before";
+  const hal::Telemetry second = run_slowly();
+  EXPECT_EQ(second.cycle_us, 730'000U);
+  EXPECT_EQ(second.cycles_by_time[6], 1U) << "300 ms to 1 s";
+  stopwatch.tick_ns = 200'000'000;
+  run_slowly();
+  const hal::Telemetry last = run_slowly();
+  EXPECT_GE(last.cycle_us, 930'000U);
+  EXPECT_EQ(last.cycle_max_us, last.cycle_us);
 }
 
 TEST_F(Cycle, PublishesADumpInTheCycleThatAskedForIt) {
@@ -385,7 +431,7 @@ TEST_F(Cycle, OverflowIsCountedWithoutAGoodFrameTooAndInRunOnly) {
   } overflowing;
   const auto overflowed = [&](std::int64_t time_ns) {
     now_ns = time_ns;
-    run_cycle(*app, {overflowing, link, watchdog}, now_ns, 0, *workspace);
+    run_cycle(*app, {overflowing, link, watchdog, stopwatch}, now_ns, 0, *workspace);
     return link.telemetry.back().frames_overflowed;
   };
   EXPECT_EQ(overflowed(next_time_ns()), 3U);
@@ -462,7 +508,7 @@ TEST_F(Cycle, AMotionNowThatIsNotInTheLrfOfNowIsMarked) {
 TEST_F(Cycle, WorksWithoutNavigation) {
   now_ns = next_time_ns();
   lidar.add(good_frame(1, now_ns, 1));
-  run_cycle(*app, {lidar, link, watchdog}, now_ns, 0, *workspace);
+  run_cycle(*app, {lidar, link, watchdog, stopwatch}, now_ns, 0, *workspace);
   EXPECT_EQ(last_validity(), Validity::kValid);
   EXPECT_NE(link.attitudes.back().doubts & hal::kDoubtChaserUnknown, 0);
 }

@@ -63,6 +63,70 @@ TEST_F(PoseReport, IsThatOfTheEstimate) {
   EXPECT_EQ(out->telemetry.poses_verified, 0U);
 }
 
+class LateCycle : public PoseReport {
+ protected:
+  LateCycle() { init_with_surface(); }
+  // A step with a frame in a cycle that began `since_start_us` ago.
+  void step_late(std::uint32_t since_start_us, bool keeps_deadline = true) {
+    const gnc::RangeImage frame = good_frame(sequence_number + 1, next_time_ns(), sequence_number);
+    StepInputs inputs;
+    inputs.frame = &frame;
+    inputs.timing.start_ns = stopwatch.time_ns;
+    inputs.timing.keeps_deadline = keeps_deadline;
+    stopwatch.time_ns += std::uint64_t{since_start_us} * 1000;
+    ++sequence_number;
+    step(inputs);
+  }
+};
+
+// Verifies TS-TIM-130.
+TEST_F(LateCycle, CutsItsRegistrationShortAndSaysSo) {
+  for (int k = 0; k < 3; ++k) step_late(1'181'249);
+  ASSERT_EQ(pose().doubts & gnc::kPoseCoasts, 0U);
+  EXPECT_EQ(out->telemetry.registrations_cut_short, 0U);
+  step_late(1'181'250);  // 7/8 of the budget
+  EXPECT_EQ(validity(), Validity::kValid) << "the network's attitude is on time";
+  EXPECT_EQ(out->attitude.sequence_number, sequence_number);
+  EXPECT_EQ(out->attitude.pose_doubts & hal::kPoseDoubtCoasts, hal::kPoseDoubtCoasts);
+  EXPECT_EQ(out->telemetry.registrations_cut_short, 1U);
+  ASSERT_EQ(events(EventId::kRegistrationCutShort), 1);
+  EXPECT_EQ(argument(EventId::kRegistrationCutShort, 0), static_cast<std::int32_t>(sequence_number));
+  EXPECT_EQ(argument(EventId::kRegistrationCutShort, 1), 1'181);
+  EXPECT_TRUE(hal::depends_on_wall_clock(EventId::kRegistrationCutShort));
+  step_late(0);
+  EXPECT_EQ(out->attitude.pose_doubts & hal::kPoseDoubtCoasts, 0) << "the track goes on";
+  EXPECT_EQ(out->telemetry.registrations_cut_short, 1U);
+}
+
+TEST_F(LateCycle, IsATimingFaultIfItPersists) {
+  for (int k = 0; k < 3; ++k) step_late(2'000'000);
+  EXPECT_NE(out->telemetry.faults_persisting & 1U << static_cast<int>(hal::Fault::kDeadline), 0U);
+  EXPECT_EQ(app->mode(), Mode::kRun);
+}
+
+TEST_F(LateCycle, HasTheBudgetThatTheGroundSets) {
+  AppMemory::state(*app).table[Parameter::kCycleBudget_us] = 2'000'000;
+  AppMemory::commit(*app);
+  step_late(1'749'999);
+  EXPECT_EQ(out->telemetry.registrations_cut_short, 0U);
+  step_late(1'750'000);
+  EXPECT_EQ(out->telemetry.registrations_cut_short, 1U);
+}
+
+TEST_F(LateCycle, OfARunThatKeepsNoDeadlineRegistersAsAnyOther) {
+  for (int k = 0; k < 3; ++k) step_late(2'000'000'000, false);
+  EXPECT_EQ(pose().doubts & gnc::kPoseCoasts, 0U);
+  EXPECT_EQ(out->telemetry.registrations_cut_short, 0U);
+}
+
+TEST_F(LateCycle, IsNoneOfAStopwatchThatRunsBackwards) {
+  stopwatch.time_ns = 5'000'000'000;
+  stopwatch.tick_ns = std::uint64_t{0} - 1'000;
+  for (int k = 0; k < 3; ++k) step_late(0);
+  EXPECT_EQ(pose().doubts & gnc::kPoseCoasts, 0U);
+  EXPECT_EQ(out->telemetry.registrations_cut_short, 0U);
+}
+
 TEST_F(PoseReport, IsUnknownWithoutASurface) {
   init_with_model();
   step_good();

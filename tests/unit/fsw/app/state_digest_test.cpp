@@ -80,7 +80,7 @@ TEST_F(StateDigest, CoversTheTelemetryAsTheDigestOfMessagesDoes) {
   counters.model_blocks_repaired ^= 1;  // which an earlier digest left out
   EXPECT_NE(app->state_crc32(), before);
   counters.model_blocks_repaired ^= 1;
-  counters.step_us ^= 1;
+  counters.cycle_us ^= 1;
   EXPECT_EQ(app->state_crc32(), before);
 }
 

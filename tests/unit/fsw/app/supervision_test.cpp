@@ -118,34 +118,53 @@ TEST_F(Supervision, SlipsAreCountedReportedAndFlaggedIfTheyPersist) {
   EXPECT_EQ(argument(EventId::kTimingFaultOver, 0), static_cast<int>(Fault::kSlip));
 }
 
+class CycleTimes : public Supervision {
+ protected:
+  // A step that is told how long the cycle before it took.
+  void step_after(std::uint32_t previous_us) {
+    StepInputs inputs;
+    inputs.timing.previous_us = previous_us;
+    step(inputs);
+  }
+};
+
 // Verifies TS-FDIR-130, TS-TLM-050.
-TEST_F(Supervision, StepsBeyondTheirBudgetAreCountedReportedAndFlaggedIfTheyPersist) {
-  stopwatch.tick_ns = 300'000'000;
-  step_good();
-  EXPECT_EQ(out->telemetry.deadline_overruns, 0U) << "900 ms";
-  set_limit(Parameter::kStepBudget_us, 1'000);
-  step_good();
+TEST_F(CycleTimes, BeyondTheirBudgetAreCountedReportedAndFlaggedIfTheyPersist) {
+  step_after(1'350'000);
+  EXPECT_EQ(out->telemetry.deadline_overruns, 0U) << "the initial budget";
+  set_limit(Parameter::kCycleBudget_us, 1'000);
+  step_after(1'001);
   EXPECT_EQ(events(EventId::kDeadlineOverrun), 1);
-  step_good();
+  EXPECT_EQ(argument(EventId::kDeadlineOverrun, 0), 1);
+  step_after(700'000);
+  EXPECT_EQ(argument(EventId::kDeadlineOverrun, 0), 700);
+  EXPECT_FALSE(persists(Fault::kDeadline));
+  step_after(1'001);
   EXPECT_TRUE(persists(Fault::kDeadline));
   EXPECT_EQ(argument(EventId::kTimingFaultPersists, 0), static_cast<int>(Fault::kDeadline));
-  EXPECT_EQ(out->telemetry.deadline_overruns, 3U) << "the new limit applies in the cycle of its command";
+  EXPECT_EQ(out->telemetry.deadline_overruns, 3U);
   EXPECT_EQ(app->mode(), Mode::kRun);
 }
 
 // Verifies TS-TLM-050.
-TEST_F(Supervision, StepTimesFillTheHistogram) {
-  const std::uint64_t ticks_ms[] = {0, 1, 3, 10, 30, 100, 300, 1'000};
-  for (const std::uint64_t tick : ticks_ms) {
-    stopwatch.tick_ns = tick * 1'000'000;
-    step(StepInputs{});  // two stopwatch readings, one tick apart
-  }
-  for (const std::uint32_t count : out->telemetry.steps_by_time) EXPECT_EQ(count, 1U);
-  EXPECT_EQ(out->telemetry.step_max_us, 1'000'000U);
-  stopwatch.tick_ns = 0;
-  step(StepInputs{});
-  EXPECT_EQ(out->telemetry.step_us, 0U);
-  EXPECT_EQ(out->telemetry.step_max_us, 1'000'000U);
+TEST_F(CycleTimes, FillTheHistogram) {
+  for (const std::uint32_t previous_us :
+       {999U, 1'000U, 3'000U, 10'000U, 30'000U, 100'000U, 300'000U, 1'000'000U})
+    step_after(previous_us);
+  for (const std::uint32_t count : out->telemetry.cycles_by_time) EXPECT_EQ(count, 1U);
+  EXPECT_EQ(out->telemetry.cycle_max_us, 1'000'000U);
+  step_after(5);
+  EXPECT_EQ(out->telemetry.cycle_us, 5U);
+  EXPECT_EQ(out->telemetry.cycle_max_us, 1'000'000U);
+}
+
+TEST_F(CycleTimes, ThatWereNotMeasuredAreNotCounted) {
+  step_after(7);
+  step_after(0);
+  EXPECT_EQ(out->telemetry.cycle_us, 7U) << "the last one that was";
+  std::uint32_t cycles = 0;
+  for (const std::uint32_t count : out->telemetry.cycles_by_time) cycles += count;
+  EXPECT_EQ(cycles, 1U);
 }
 
 TEST_F(Supervision, InferenceTimeGoesToTelemetryOnly) {
@@ -176,8 +195,8 @@ TEST_F(Supervision, StopwatchRunningBackwardsMeasuresZero) {
 
 TEST_F(Supervision, StopwatchJumpingFarAheadSaturates) {
   stopwatch.tick_ns = std::uint64_t{1} << 60;
-  step(StepInputs{});
-  EXPECT_EQ(out->telemetry.step_us, UINT32_MAX);
+  step_good();
+  EXPECT_EQ(out->telemetry.inference_us, UINT32_MAX);
 }
 
 class DoubtfulAttitudes : public Supervision {

@@ -363,7 +363,7 @@ TEST_F(CInterface, InitialParametersAreAllowedAndThoseOfTheFirstStart) {
 TEST_F(CInterface, EveryParameterIsCheckedAndNamed) {
   tumblesight_parameters initial{};
   tumblesight_initial_parameters(&initial);
-  const std::vector<std::string> names = {"PredictedError_urad", "AttitudeJump_urad",      "StepBudget_us",
+  const std::vector<std::string> names = {"PredictedError_urad", "AttitudeJump_urad",      "CycleBudget_us",
                                           "ScrubBlocks",         "FutureTolerance_us",     "MaxFrameAge_ms",
                                           "LongestCoast_ms",     "ChaserTimeTolerance_us", "EventsOfAKind",
                                           "EventWindow_cycles",  "LongestWithoutChaser_ms"};
@@ -445,11 +445,13 @@ TEST_F(CInterface, AStoreThatFailsIsReported) {
 
 TEST_F(CInterface, MeasuresWithTheCallersStopwatch) {
   ASSERT_EQ(init(), TUMBLESIGHT_OK);
-  EXPECT_EQ(step_frame().telemetry.step_us, 0U);
+  step_frame();
+  EXPECT_EQ(step_frame().telemetry.cycle_us, 0U);
   settings.context = &board;
   settings.stopwatch_ns = Board::now_ns;
   ASSERT_EQ(init(), TUMBLESIGHT_OK);
-  EXPECT_GE(step_frame().telemetry.step_us, 1000U);
+  EXPECT_EQ(step_frame().telemetry.cycle_us, 0U) << "there is no cycle before";
+  EXPECT_GE(step_frame().telemetry.cycle_us, 1000U);
 }
 
 TEST_F(CInterface, LoadsAModelIntoAWritableBank) {

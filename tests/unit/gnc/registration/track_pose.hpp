@@ -138,7 +138,7 @@ class TrackPose : public testing::Test {
     std::memset(static_cast<void*>(scratch_.get()), left_in_scratch_, sizeof *scratch_);
     PoseEstimate estimate;
     track_pose({has_mesh_ ? section_.mesh() : SurfaceMesh(), radius_mm_, stated_noise_}, frame, *scratch_,
-               *vertices_, *state_, estimate, budget_);
+               *vertices_, *state_, estimate, budget_, deadline_);
     return estimate;
   }
   // Another target than the lopsided body; before the first frame.
@@ -183,6 +183,7 @@ class TrackPose : public testing::Test {
   int frames_ = 0;
   std::int64_t period_ns_ = kNominalPeriod_ns;
   std::int32_t budget_ = WorkBudget::kOfAFrame;
+  Deadline* deadline_ = nullptr;
   int left_in_scratch_ = 0xA5;
   int network_motion_model_ = kSpinModel;
   MotionModels<Fixed> motion_models_ = motion_models<Fixed>(Inertia<Fixed>());

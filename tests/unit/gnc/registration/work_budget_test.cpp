@@ -57,6 +57,56 @@ TEST(WorkBudget, APartThatExhaustsItLeavesNothingForOthers) {
   EXPECT_FALSE(budget.covers(1));
 }
 
+// Passes at a look: 0 is the first one. `looks`: how many there were.
+class DeadlineAtALook final : public Deadline {
+ public:
+  explicit DeadlineAtALook(int look) : look_(look) {}
+  bool has_passed() override { return looks++ >= look_; }
+  int looks = 0;
+
+ private:
+  int look_;
+};
+
+TEST(WorkBudget, LooksAtItsDeadlineWhenItBeginsToSpendAndThenRegularly) {
+  DeadlineAtALook deadline(4);
+  WorkBudget budget;
+  budget.begin(WorkBudget::kOfAFrame, &deadline);
+  EXPECT_EQ(deadline.looks, 0);
+  EXPECT_TRUE(budget.spend(1));
+  EXPECT_EQ(deadline.looks, 1);
+  EXPECT_TRUE(budget.spend(WorkBudget::kBetweenLooks - 1));
+  EXPECT_EQ(deadline.looks, 1);
+  EXPECT_TRUE(budget.spend(1));
+  EXPECT_EQ(deadline.looks, 2);
+  EXPECT_TRUE(budget.spend(5 * WorkBudget::kBetweenLooks));
+  EXPECT_EQ(deadline.looks, 3) << "once per charge";
+  EXPECT_TRUE(budget.spend(WorkBudget::kBetweenLooks));
+  EXPECT_FALSE(budget.is_late());
+  EXPECT_FALSE(budget.spend(WorkBudget::kBetweenLooks));
+  EXPECT_TRUE(budget.is_late());
+  EXPECT_TRUE(budget.is_exhausted());
+}
+
+TEST(WorkBudget, NothingIsLeftAfterItsDeadline) {
+  DeadlineAtALook deadline(0);
+  WorkBudget budget;
+  budget.begin(100, &deadline);
+  EXPECT_FALSE(budget.spend(1));
+  EXPECT_EQ(budget.left(), 0);
+  budget.give_back(50);
+  EXPECT_TRUE(budget.is_exhausted());
+  EXPECT_FALSE(budget.end_part());
+  budget.give_back(50);
+  EXPECT_EQ(budget.left(), 0) << "for other parts of the frame either";
+  EXPECT_FALSE(budget.spend(1));
+  EXPECT_TRUE(budget.is_late());
+  EXPECT_EQ(deadline.looks, 1) << "time does not run back";
+  budget.begin(100);
+  EXPECT_FALSE(budget.is_late());
+  EXPECT_TRUE(budget.spend(100));
+}
+
 class WorkOfAFrame : public TrackPose {
  protected:
   WorkOfAFrame() { rate_ = {0.0, 0.02, 0.01}; }
@@ -243,6 +293,83 @@ TEST_P(EveryBudget, GivesAPoseOrLeavesTheTrackAlone) {
   EXPECT_EQ(Known(*state_), with_frame);
 }
 INSTANTIATE_TEST_SUITE_P(AfterFrames, EveryBudget, testing::Values(0, 1, 2, 3, 5, 8, 11));
+
+// Whenever the deadline passes, the frame gives a pose of its own or leaves the track as it was.
+TEST_P(EveryBudget, GivesAPoseOrLeavesTheTrackAloneWheneverTheDeadlinePasses) {
+  begin_track(GetParam());
+  budget_ = WorkBudget::kOfAFrame;
+  const auto track_until = [&](int look) {
+    *state_ = begun_;
+    DeadlineAtALook deadline(look);
+    deadline_ = &deadline;
+    const PoseEstimate estimate = track({0.5, 0.2, 0.0}, second_, 900'000);
+    deadline_ = nullptr;
+    EXPECT_EQ(estimate.is_cut_short, deadline.looks > look) << look;
+    return std::pair(estimate, deadline.looks);
+  };
+  const auto [whole, looks] = track_until(1'000'000);
+  const Known with_frame(*state_);
+  ASSERT_GT(looks, 5);
+  track_until(0);
+  const Known without_frame(*state_);
+  EXPECT_EQ(without_frame.llr_q8, begun_.llr_q8);
+  EXPECT_EQ(without_frame.ages_ns.size(), static_cast<std::size_t>(begun_.history.count));
+  int poses = 0, none = 0;
+  for (int look = 0; look < looks; ++look) {
+    const PoseEstimate estimate = track_until(look).first;
+    EXPECT_TRUE(estimate.is_cut_short) << look;
+    const bool is_measured = (estimate.doubts & (kPoseCoasts | kPoseUnknown)) == 0;
+    ++(is_measured ? poses : none);
+    if (is_measured) continue;
+    EXPECT_EQ(estimate.doubts & kPoseAmbiguous, kPoseAmbiguous) << look;
+    EXPECT_EQ(Known(*state_), without_frame) << look;
+  }
+  EXPECT_GT(poses, 0);
+  EXPECT_GT(none, 3);
+  const PoseEstimate again = track_until(looks).first;
+  EXPECT_FALSE(again.is_cut_short);
+  EXPECT_EQ(again.doubts, whole.doubts);
+  EXPECT_EQ(Known(*state_), with_frame);
+}
+
+// What the budget still does after the deadline, with the most expensive images: at most what lies between
+// two looks, and one charge.
+TEST_F(WorkOfAFrame, LooksAtTheDeadlineOftenEnough) {
+  class LargestGap final : public Deadline {
+   public:
+    explicit LargestGap(const WorkBudget& budget) : budget_(budget) {}
+    bool has_passed() override {
+      if (last_left_ >= 0) largest = std::max(largest, last_left_ - budget_.left());
+      last_left_ = budget_.left();
+      return false;
+    }
+    std::int32_t largest = 0;
+
+   private:
+    const WorkBudget& budget_;
+    std::int32_t last_left_ = -1;
+  };
+  std::int32_t largest = 0;
+  for (const int reach : {1, 3, 20}) {
+    ExpensiveMesh mesh;
+    mesh.reach = reach;
+    take_expensive(mesh);
+    *state_ = {};
+    truth_.r_lrf_trf = rotation_of(random_.vector(0.3));
+    for (int frame = 0; frame < 4; ++frame) {
+      see();
+      lose_right_of(frame % 2 == 0 ? 64 : sensor_.rays);
+      LargestGap gap(scratch_->refinement.budget);
+      deadline_ = &gap;
+      track_hard();
+      deadline_ = nullptr;
+      largest = std::max(largest, gap.largest);
+    }
+  }
+  EXPECT_GT(largest, WorkBudget::kBetweenLooks);
+  EXPECT_LE(largest, WorkBudget::kBetweenLooks + WorkBudget::kMostBeyond);
+  RecordProperty("largest_work_between_looks", largest);
+}
 
 // A track outlives frames that exhaust the budget, and what was proven does not grow by them.
 TEST_F(WorkOfAFrame, ATrackCoastsOverExhaustedFrames) {

@@ -33,7 +33,7 @@ class CommandFlood : public ::testing::Test {
   const Telemetry& cycle() {
     now_ns_ += fsw::config::kFramePeriod_ns;
     link_->begin_cycle(1, k_++);
-    fsw::run_cycle(*app_, {lidar_, *link_, watchdog_}, now_ns_, 0, *workspace_);
+    fsw::run_cycle(*app_, {lidar_, *link_, watchdog_, stopwatch_}, now_ns_, 0, *workspace_);
     link_->end_cycle(0);
     return workspace_->outputs.telemetry;
   }

@@ -64,12 +64,13 @@ TEST(MessageDigest, CoversEveryNumberOfTheTelemetryButThoseOfTheWallClock) {
                                       "heap_allocations",
                                       "inference_max_us",
                                       "inference_us",
+                                      "registrations_cut_short",
                                       "stack_left_min_bytes",
-                                      "step_max_us",
-                                      "step_us",
+                                      "cycle_max_us",
+                                      "cycle_us",
                                       "store_max_us",
                                       "store_us"};
-  for (int bin = 0; bin < Telemetry::kStepTimeBins; ++bin) expected.insert("steps_by_time");
+  for (int bin = 0; bin < Telemetry::kCycleTimeBins; ++bin) expected.insert("cycles_by_time");
   EXPECT_EQ(silent_fields(Telemetry{}), expected);
 }
 

@@ -6,7 +6,7 @@
 struct tumblesight_parameters TUMBLESIGHT_Parameters = {
     .predicted_error_urad = 523599,
     .attitude_jump_urad = 1047198,
-    .step_budget_us = 1350000,
+    .cycle_budget_us = 1350000,
     .scrub_blocks = 12,
     .future_tolerance_us = 1000,
     .max_frame_age_ms = 2970,
