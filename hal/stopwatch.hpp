@@ -1,4 +1,5 @@
-// Stopwatch: measures durations. No attitude depends on it.
+// Stopwatch: measures durations, and says when a cycle is late. Of what is estimated only the registration of
+// a late cycle depends on it.
 #pragma once
 
 #include <cstdint>

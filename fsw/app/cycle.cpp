@@ -151,7 +151,8 @@ void run_cycle(AttitudeInitApp& app, const CycleInterfaces& interfaces, std::int
   receive_chaser(interfaces.navigation, now_ns, workspace.inputs);
   receive_commands(interfaces.link, workspace.inputs);
   workspace.inputs.cycle_slips = cycle_slips;
-  workspace.inputs.timing = {start_ns, workspace.previous_cycle_us, interfaces.keeps_deadline};
+  workspace.inputs.timing = {interfaces.keeps_deadline ? &interfaces.stopwatch : nullptr, start_ns,
+                             workspace.previous_cycle_us};
   app.step(now_ns, workspace.inputs, workspace.outputs);
 
   const StepOutputs& outputs = workspace.outputs;

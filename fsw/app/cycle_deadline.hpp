@@ -4,24 +4,23 @@
 #include <cstdint>
 
 #include "fsw/app/counter.hpp"
+#include "fsw/app/step_io.hpp"
 #include "gnc/registration/work_budget.hpp"
-#include "hal/stopwatch.hpp"
 
 namespace tumblesight::fsw {
 
 class CycleDeadline final : public gnc::Deadline {
  public:
-  // `start_ns`: when the cycle began, by the stopwatch. Registration ends when 7/8 of `budget_us` have
-  // passed. The rest is for the fit of the motion, the checks, the stored state and publishing.
-  CycleDeadline(hal::Stopwatch& stopwatch, std::uint64_t start_ns, std::uint32_t budget_us)
-      : stopwatch_(stopwatch), start_ns_(start_ns), most_us_(budget_us - budget_us / 8) {}
+  // Registration ends when 7/8 of `budget_us` have passed. The rest is for the fit of the motion, the checks,
+  // the stored state and publishing. `timing`: with a stopwatch.
+  CycleDeadline(const CycleTiming& timing, std::uint32_t budget_us)
+      : timing_(timing), most_us_(budget_us - budget_us / 8) {}
 
   bool has_passed() override { return since_start_us() >= most_us_; }
-  std::uint32_t since_start_us() { return elapsed_us(start_ns_, stopwatch_.now_ns()); }
+  std::uint32_t since_start_us() const { return elapsed_us(timing_.start_ns, timing_.stopwatch->now_ns()); }
 
  private:
-  hal::Stopwatch& stopwatch_;
-  std::uint64_t start_ns_;
+  const CycleTiming& timing_;
   std::uint32_t most_us_;
 };
 

@@ -91,13 +91,13 @@ void FrameHandler::pass_over() {
 
 void FrameHandler::use(const StepInputs& inputs) {
   const gnc::RangeImage& frame = *inputs.frame;
-  hal::Stopwatch& stopwatch = *state_.platform.stopwatch;
-  CycleDeadline deadline(stopwatch, inputs.timing.start_ns, state_.table[Parameter::kCycleBudget_us]);
+  CycleDeadline deadline(inputs.timing, state_.table[Parameter::kCycleBudget_us]);
   const gnc::FrameInputs frame_inputs{frame, inputs.chaser, inputs.chaser_now, state_.now_ns,
-                                      inputs.timing.keeps_deadline ? &deadline : nullptr};
+                                      inputs.timing.stopwatch != nullptr ? &deadline : nullptr};
   const gnc::FrameTrackerLimits limits = state_.tracker_limits();
   gnc::FrameOutcome& outcome = workspace_.outcome;
   hal::Telemetry& counters = state_.counters;
+  hal::Stopwatch& stopwatch = *state_.platform.stopwatch;
   const std::uint64_t start_ns = stopwatch.now_ns();
   tracker_.use(frame_inputs, limits, state_.tracking, outcome);
   const std::uint64_t end_ns = stopwatch.now_ns();
@@ -195,7 +195,6 @@ void FrameHandler::note_use(const gnc::RangeImage& frame) {
 
 void FrameHandler::note_cut_short(const gnc::RangeImage& frame, std::uint32_t since_start_us) {
   count(state_.counters.registrations_cut_short);
-  state_.faults_seen |= bit_of(Fault::kDeadline);
   report_(EventId::kRegistrationCutShort, bits_of(frame.sequence_number),
           static_cast<std::int32_t>(since_start_us / 1000U));
 }

@@ -15,6 +15,7 @@
 #include "hal/messages/event.hpp"
 #include "hal/messages/memory_dump.hpp"
 #include "hal/messages/telemetry.hpp"
+#include "hal/stopwatch.hpp"
 
 namespace tumblesight::fsw {
 
@@ -29,11 +30,12 @@ struct DroppedFrame {
   std::uint16_t rays = 0;
 };
 
-// Of the cycle that the step is part of, by the platform's stopwatch.
+// Of the cycle that the step is part of.
 struct CycleTiming {
-  std::uint64_t start_ns = 0;
+  // By which a late cycle cuts its registration short (cycle_deadline.hpp); nullptr: it does not.
+  hal::Stopwatch* stopwatch = nullptr;
+  std::uint64_t start_ns = 0;     // by the stopwatch
   std::uint32_t previous_us = 0;  // that the previous cycle took; 0: not measured
-  bool keeps_deadline = false;    // a late cycle cuts its registration short (cycle_deadline.hpp)
 };
 
 // Counts outside their range are a bug of the caller: the step raises an assertion and goes SAFE.

@@ -13,7 +13,7 @@ void Supervisor::supervise(Validity validity, std::uint32_t cycle_slips, std::ui
     state_.faults_seen |= bit_of(Fault::kSlip);
     report_(EventId::kCycleSlipped, clamp_to_int32(cycle_slips));
   }
-  if (previous_cycle_us > 0) note_duration(previous_cycle_us);
+  note_duration(previous_cycle_us);
   constexpr int kLast = static_cast<int>(Fault::kTrackRestarts);
   static_assert(kLast == kFaults - 1, "behind the faults whose responses reset the estimator");
   for (int i = 0; i < kLast; ++i) observe(static_cast<Fault>(i));
@@ -42,6 +42,7 @@ void Supervisor::note_duration(std::uint32_t cycle_us) {
       1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000};
   hal::Telemetry& counters = state_.counters;
   counters.cycle_us = cycle_us;
+  if (cycle_us == 0) return;  // not measured
   if (cycle_us > counters.cycle_max_us) counters.cycle_max_us = cycle_us;
   std::size_t bin = 0;
   for (const std::uint32_t edge_us : kEdges_us) bin += cycle_us >= edge_us ? 1 : 0;

@@ -21,7 +21,7 @@ class Supervisor {
                  std::uint32_t resets_before);
 
  private:
-  void note_duration(std::uint32_t cycle_us);
+  void note_duration(std::uint32_t cycle_us);  // of the previous cycle
   void observe(Fault fault);
   void respond(const config::FaultRule& rule);
 

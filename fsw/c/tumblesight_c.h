@@ -127,9 +127,8 @@ struct tumblesight_settings {
   const struct tumblesight_command_keys*
       command_keys; /* copied; null: the caller authenticates all commands */
   void* context;    /* first argument of the functions below */
-  /* Monotonic. By it a late step cuts its registration short, so that its report is on time
-   * (cycle_budget_us), and the telemetry gives durations. Null: neither, and the results do not depend on the
-   * machine's speed. */
+  /* Monotonic: for durations in telemetry, and to cut the registration of a late step short, so that its
+   * report is on time (cycle_budget_us). Null: durations are 0, and nothing is cut short. */
   uint64_t (*stopwatch_ns)(void* context);
   /* A store that survives a reset, with two copies (0 and 1) of TUMBLESIGHT_STORED_BYTES. Both null: none.
    * Each call takes a few milliseconds at most. A write that fails must not change the other copy. */

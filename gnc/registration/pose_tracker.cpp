@@ -265,14 +265,9 @@ bool estimate_motion(const PoseFrame& frame, bool is_tracked, PoseScratch& scrat
   return true;
 }
 
-// Registers the frame and fits the motion of the track. Without a surface or a view of it the track ends.
-void estimate_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch,
+// Registers the frame and fits the motion of the track.
+void estimate_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& scratch, bool is_tracked,
                    PoseTrackerState& state, PoseEstimate& estimate) {
-  bool is_tracked = state.history.count >= kTrackedPoses;
-  if (!view_target(target, frame, is_tracked, scratch, state)) {
-    forget_track(state);
-    return;
-  }
   const std::int32_t llr_before_q8 = state.llr_q8;
   is_tracked = register_frame(target, frame, is_tracked, scratch, state, estimate);
   if (!estimate_motion(frame, is_tracked, scratch, state, estimate)) return;
@@ -311,7 +306,12 @@ void track_pose(const PoseTarget& target, const PoseFrame& frame, PoseScratch& s
   limit_damage(state);
   advance(frame, state);
   begin_budgets(state, budget, deadline, scratch);
-  estimate_pose(target, frame, scratch, state, estimate);
+  const bool is_tracked = state.history.count >= kTrackedPoses;
+  if (!view_target(target, frame, is_tracked, scratch, state)) {
+    forget_track(state);
+    return;
+  }
+  estimate_pose(target, frame, scratch, is_tracked, state, estimate);
   estimate.is_cut_short = scratch.refinement.budget.is_late();
 }
 

@@ -3,10 +3,9 @@
 namespace tumblesight::gnc {
 
 void WorkBudget::look_at_deadline() {
-  since_look_ = 0;
-  if (is_late_ || !deadline_->has_passed()) return;
-  is_late_ = true;
-  left_ = kExhausted;
+  is_late_ = deadline_->has_passed();
+  look_at_ = is_late_ ? kNever : left_ - kBetweenLooks;
+  if (is_late_) left_ = kExhausted;
 }
 
 }  // namespace tumblesight::gnc

@@ -63,18 +63,18 @@ class Deadline {
 class WorkBudget {
  public:
   static constexpr std::int32_t kOfAFrame = 95'000'000;
-  // What is charged afterwards exceeds the budget by one triangle or edge at most. No charge is larger.
+  // What is charged afterwards exceeds the budget by one triangle or edge at most.
   static constexpr std::int32_t kMostBeyond = 2'000'000;
 
   // The deadline is asked for at the beginning, and again each time that so much has been spent: about 10 ms
   // on LEON3 at 100 MHz.
   static constexpr std::int32_t kBetweenLooks = 1'000'000;
 
-  // Before this call the budget is larger than any frame needs. `deadline`: must stay valid as long as work is
-  // spent, or nullptr.
+  // Before this call the budget is larger than any frame needs. `deadline`: must stay valid as long as work
+  // is spent, or nullptr.
   void begin(std::int32_t budget, Deadline* deadline = nullptr) {
     left_ = max(budget, 0);
-    since_look_ = kBetweenLooks;
+    look_at_ = deadline != nullptr ? left_ : kNever;
     deadline_ = deadline;
     is_late_ = false;
   }
@@ -82,15 +82,14 @@ class WorkBudget {
   // begun.
   bool spend(std::int32_t work) {
     left_ = work > left_ ? kExhausted : left_ - work;
-    if (deadline_ != nullptr) {
-      since_look_ += work;
-      if (since_look_ >= kBetweenLooks) look_at_deadline();
-    }
+    if (left_ <= look_at_) look_at_deadline();
     return !is_exhausted();
   }
   // What was held back and not taken. A budget that is exhausted or late remains so.
   void give_back(std::int32_t work) {
-    if (!is_exhausted() && !is_late_) left_ += work;
+    if (is_exhausted() || is_late_) return;
+    left_ += work;
+    look_at_ += work;
   }
   bool covers(std::int64_t work) const { return work <= left_; }
   // After a part that the frame can do without, which began with a budget that was not exhausted. If the part
@@ -107,9 +106,9 @@ class WorkBudget {
  private:
   void look_at_deadline();
 
-  static constexpr std::int32_t kExhausted = -1;
+  static constexpr std::int32_t kExhausted = -1, kNever = -0x7000'0000;
   std::int32_t left_ = 0x7FFF'FFFF;
-  std::int32_t since_look_ = 0;
+  std::int32_t look_at_ = kNever;  // the deadline is asked for when so much is left, or less
   Deadline* deadline_ = nullptr;
   bool is_late_ = false;
 };

@@ -14,8 +14,7 @@ enum class Fault : std::uint8_t {
   kErrorLarge = 3,       // expected error above its limit
   kAttitudeJump = 4,     // too far from the attitude that the track predicted
   kOutage = 5,           // no usable frame in RUN
-  kDeadline = 6,         // the previous cycle took longer than its budget, or this one's registration was cut
-                         // short by it
+  kDeadline = 6,         // the previous cycle took longer than its budget
   kSlip = 7,             // the task missed one or more releases
   kFrameFrozen = 8,      // ranges like those of one of the last eight used frames, with a new sequence number
   kTrackRestarts = 9,    // the estimator was reset in this cycle, and not by command

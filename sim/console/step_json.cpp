@@ -159,10 +159,12 @@ void add_lights(const hal::Telemetry& telemetry, Json& lights) {
                            : is_in_use                                        ? "alarm"
                                                                               : "off"));
   }
-  const bool is_late = telemetry.deadline_overruns != 0 || telemetry.cycle_slips != 0;
+  const bool is_late = telemetry.deadline_overruns != 0 || telemetry.cycle_slips != 0 ||
+                       telemetry.registrations_cut_short != 0;
   lights.push_back(light("timing",
                          is_late ? std::to_string(telemetry.deadline_overruns) + " overruns, " +
-                                       std::to_string(telemetry.cycle_slips) + " slips"
+                                       std::to_string(telemetry.cycle_slips) + " slips, " +
+                                       std::to_string(telemetry.registrations_cut_short) + " cut short"
                                  : "no overrun",
                          is_late ? "warn" : "ok"));
   lights.push_back(light("heap", std::to_string(telemetry.heap_allocations) + " allocations",
@@ -239,7 +241,7 @@ Json row_fields() {
           "pose_rate_deg_s",
           "pose_right_m",
           "pose_up_m",
-          "step_ms",
+          "cycle_ms",
           "inference_ms",
           "frames_used",
           "frames_refused",

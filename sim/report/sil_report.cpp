@@ -146,6 +146,7 @@ FactList counter_facts(const SilRunResult& run) {
       {"commands refused", h.commands_refused},
       {"events", h.events},
       {"deadline overruns", h.deadline_overruns},
+      {"registrations cut short", h.registrations_cut_short},
       {"complete model checks", h.model_passes},
       {"memory errors repaired",
        h.memory_corrections + h.states_restored + h.constants_reloaded + h.model_blocks_repaired},

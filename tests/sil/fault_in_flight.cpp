@@ -2,7 +2,7 @@
 // TUMBLESIGHT_FAULT selects it. "heap": the flight task allocates each time that it reports the end of a
 // cycle, which is after the cycle's telemetry. "thread": the program itself gets no thread; its libraries do.
 // "stop at exec": SIGTERM just before the program replaces itself with another one. "slow": the flight task
-// takes 8 ms each time that it looks at its clock, as on a slow processor.
+// takes 15 ms each time that it looks at its clock, as on a slow processor.
 #include <dlfcn.h>
 #include <errno.h>
 #include <pthread.h>
@@ -58,7 +58,7 @@ int clock_gettime(clockid_t clock, timespec* time) noexcept {
   static const auto get = original<int (*)(clockid_t, timespec*)>("clock_gettime");
   static const bool is_slow = fault_is("slow");
   const bool is_other_thread = gettid() != getpid();
-  if (is_slow && is_other_thread && is_of_flight(__builtin_return_address(0))) usleep(8000);
+  if (is_slow && is_other_thread && is_of_flight(__builtin_return_address(0))) usleep(15'000);
   return get(clock, time);
 }
 

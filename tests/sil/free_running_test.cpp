@@ -103,41 +103,57 @@ Telecommand set_cycle_budget(std::uint32_t budget_us) {
           {static_cast<std::uint8_t>(fsw::Parameter::kCycleBudget_us), byte(24), byte(16), byte(8), byte(0)}};
 }
 
+// A processor on which the registration of a frame takes half a second and more.
+class SlowProcessor : public testing::Test {
+ protected:
+  SilRunResult run(const SilSettings& settings, std::uint32_t budget_us) {
+    const test::Environment preload("LD_PRELOAD", TUMBLESIGHT_FAULT_IN_FLIGHT);
+    const test::Environment fault("TUMBLESIGHT_FAULT", "slow");
+    const std::vector<Sequence> sequences = test::sequences(1, 1);
+    SimulatedSteps simulated(test::lidar(), test::kSwath_m, sequences, false);
+    WithTelecommand source(simulated, set_cycle_budget(budget_us));
+    return run_sil(settings, source, {});
+  }
+};
+
 // Verifies TS-TIM-130.
-// On a processor whose registration takes longer than its period, the network's attitudes come on time.
-// Without the deadline a frame takes some 300 ms.
-TEST(FreeRunning, OnASlowProcessorTheRegistrationIsCutShortAndTheReportsAreOnTime) {
+TEST_F(SlowProcessor, FreeRunningCutsItsRegistrationShortAndReportsOnTime) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "AddressSanitizer must be loaded before any other library";
 #endif
-  const test::Environment preload("LD_PRELOAD", TUMBLESIGHT_FAULT_IN_FLIGHT);
-  const test::Environment fault("TUMBLESIGHT_FAULT", "slow");
   SilSettings settings = test::shipped_settings();
   settings.free_running = true;
-  settings.speed = 13.5;  // a period of 200 ms
-  const std::vector<Sequence> sequences = test::sequences(2, 1);
-  SimulatedSteps simulated(test::lidar(), test::kSwath_m, sequences, false);
-  WithTelecommand source(simulated, set_cycle_budget(100'000));
-  const SilRunResult run = run_sil(settings, source, {});
-  EXPECT_EQ(run.failure, "");
-  EXPECT_LE(run.steps_missed, 2U) << "a busy machine may lose a cycle or two";
+  settings.speed = 5.4;  // a period of 500 ms
+  const SilRunResult result = run(settings, 200'000);
+  EXPECT_EQ(result.failure, "");
+  EXPECT_LE(result.steps_missed, 1U) << "a busy machine may lose a cycle";
   constexpr double k20Degrees_rad = 20.0 * M_PI / 180.0;
-  std::uint32_t late = 0, right = 0, answered = 0;
-  for (const StepResult& step : run.steps) {
+  std::uint32_t events = 0;
+  for (const StepResult& step : result.steps) {
     if (!step.answered || step.frame_index == 0) continue;
-    ++answered;
     EXPECT_NE(step.attitude.pose_doubts, 0) << "not verified";
-    const double error_rad = gnc::to_double(step.attitude.q_lrf_trf).angularDistance(step.truth.q_lrf_trf);
-    right += error_rad < k20Degrees_rad ? 1 : 0;
+    EXPECT_LT(gnc::to_double(step.attitude.q_lrf_trf).angularDistance(step.truth.q_lrf_trf), k20Degrees_rad);
     for (const hal::Event& event : step.events)
-      late += event.id == hal::EventId::kRegistrationCutShort ? 1 : 0;
+      events += event.id == hal::EventId::kRegistrationCutShort ? 1 : 0;
   }
-  const hal::Telemetry& last = run.steps.back().telemetry;
-  EXPECT_GE(last.registrations_cut_short, 16U);
-  EXPECT_GE(late, 8U) << "at most eight of a kind in 16 cycles";
-  EXPECT_LE(last.cycle_slips, 2U);
-  EXPECT_GE(right, answered - 2);
-  EXPECT_EQ(run.flight_heap_allocations, 0U);
+  const hal::Telemetry& last = result.steps.back().telemetry;
+  EXPECT_GE(last.registrations_cut_short, 8U);
+  EXPECT_GE(events, 6U);
+  EXPECT_LE(last.cycle_slips, 1U) << "without the deadline most cycles slip";
+  EXPECT_EQ(result.flight_heap_allocations, 0U);
+}
+
+// Verifies TS-TIM-130.
+TEST_F(SlowProcessor, InLockstepGivesTheResultsOfAFastOne) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer must be loaded before any other library";
+#endif
+  const SilRunResult result = run(test::shipped_settings(), 1'000);
+  EXPECT_EQ(result.failure, "");
+  ASSERT_EQ(result.steps.size(), 10U);
+  EXPECT_GT(result.steps.back().telemetry.deadline_overruns, 5U);
+  EXPECT_EQ(result.steps.back().telemetry.registrations_cut_short, 0U);
+  EXPECT_EQ(result.steps.back().attitude.pose_doubts, 0) << "verified";
 }
 
 TEST(FreeRunning, NeedsASpeed) {

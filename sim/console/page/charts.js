@@ -24,7 +24,7 @@ const standardCharts = [
                channel('pose_rate_deg_s', 'pose', 'pose')] },
   { title: 'Range', unit: 'm', channels: [channel('true_range_m', 'truth', 'truth', thin), channel('pose_range_m', 'pose', 'pose')] },
   { title: 'Position', unit: 'm', channels: [channel('pose_right_m', 'right', 'pose'), channel('pose_up_m', 'up', 'extra-1')] },
-  { title: 'Time', unit: 'ms', channels: [channel('step_ms', 'step', 'pose'), channel('inference_ms', 'inference', 'network')] },
+  { title: 'Time', unit: 'ms', channels: [channel('cycle_ms', 'cycle before', 'pose'), channel('inference_ms', 'inference', 'network')] },
 ];
 const FIRST_COUNTER = 'frames_refused';
 

@@ -7,7 +7,7 @@ const fields = {
   second_odds: ['Odds of the second', '', 3], true_range_m: ['True range', 'm', 3], pose_range_m: ['Pose range', 'm', 3],
   true_rate_deg_s: ['True rate', '°/s', 3], network_rate_deg_s: ['Network rate', '°/s', 3],
   pose_rate_deg_s: ['Pose rate', '°/s', 3], pose_right_m: ['Right', 'm', 4], pose_up_m: ['Up', 'm', 4],
-  step_ms: ['Step', 'ms', 2], inference_ms: ['Inference', 'ms', 2], frames_used: ['Frames used', '', 0],
+  cycle_ms: ['Cycle before', 'ms', 2], inference_ms: ['Inference', 'ms', 2], frames_used: ['Frames used', '', 0],
   frames_refused: ['Frames refused', '', 0], frames_missing: ['Frames missing', '', 0],
   frames_repeated: ['Frames repeated', '', 0], commands_accepted: ['Commands accepted', '', 0],
   commands_refused: ['Commands refused', '', 0], events: ['Events', '', 0], mode: ['Mode', '', 0],

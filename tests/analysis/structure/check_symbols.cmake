@@ -12,7 +12,8 @@ set(allowed "^(memcpy|memmove|memset|memcmp|strlen|strcmp|strncmp|sqrtf?|abort)$
   "^__(asan|ubsan|tsan|sanitizer|gcov|gcc_personality)_")
 # Forbidden even if the library defines them itself.
 set(heap "^(malloc|calloc|realloc|free|aligned_alloc|posix_memalign)$" "^_Zn[aw]" "^_Zd[al]"
-  "^_?_?(strn?dup|v?asprintf|f?open_?memstream|f(d|re)?open|tmpfile|getline|getdelim|(fd)?opendir|scandir|realpath|dlopen)(64)?$")
+  "^_?_?(strn?dup|v?asprintf|f?open_?memstream|f(d|re)?open|tmpfile|getline|getdelim|(fd)?opendir|scandir|realpath|dlopen)(64)?$"
+  "^_ZNK?S[st].*basic_string" "^_ZNK?S[st].*basic_[io]?f(stream|ilebuf)" "^_ZNK?St.*stringstream" "^_ZNSt6locale")
 set(never ${heap} "^_ZT[IS]" "^__cxa_"
   "^_?_?(v?f?s?n?printf|puts|putchar|fwrite|fputs)" "^dds_"
   "^_?_?(exp|exp2|expm1|log|log2|log10|log1p|pow|sin|cos|tan|asin|acos|atan|atan2|sinh|cosh|tanh|cbrt|hypot|erf|fmod)[fl]?(_finite)?$")

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 
 extern "C" int dds_write(int, const void*);
 extern "C" int something_from_elsewhere(int);
@@ -14,10 +15,12 @@ struct Base {
 Base::~Base() = default;
 
 volatile float input = 1.0F;
+std::string text;
 
 void* break_the_rules(int size) {
   std::printf("%d %f\n", size, static_cast<double>(std::exp(input) + std::tanh(input)));
   if (size < 0) throw size;
+  text.append("grows", static_cast<std::size_t>(size));
   void* block = std::malloc(static_cast<std::size_t>(size));
   std::free(block);
   if (std::fopen("", "r") == nullptr) std::printf("none\n");

@@ -33,5 +33,5 @@ _RULES = (
 )
 U54 = Model("U54", sys.modules[__name__], _RULES, fetches=Cache(32768, 8, 64, 20),
             accesses=Cache(32768, 8, 64, 20, store_miss_cycles=20), branches=Branches(mispredicted=3, predicted=True, indirect=1),
-            basis="SiFive E31 Manual, *Execution pipeline*, which the U54 is assumed to be like: word loads 2, others 3, multiply 5 and not "
-            "pipelined, misprediction 3. Assumed: divide 34, the wait for the L2 20")
+            basis="SiFive FU540-C000 Manual v1p0, chapter 4: loads of words and double words 2, others 3, multiply 5 and not pipelined, "
+            "misprediction 3. Assumed: divide 34 (2 to 65 by its operands), the wait for the L2 20")

@@ -1,8 +1,10 @@
 #include "tests/unit/fsw/app/app_fixture.hpp"
 
+#include <array>
 #include <cmath>
 #include <random>
 
+#include "gnc/rcnn/model_image.hpp"
 #include "tests/support/app_memory.hpp"
 #include "tests/support/test_models.hpp"
 
@@ -32,6 +34,25 @@ gnc::RangeImage good_frame(std::uint32_t sequence_number, std::int64_t exposure_
     }
   }
   return frame;
+}
+
+std::vector<std::uint8_t> image_with_surface() {
+  constexpr int kHalf = 16'000;  // of 32767: 1.6 m
+  constexpr std::array<std::array<int, 4>, 6> kSides{
+      {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+  std::vector<int> numbers{8, 24, 0, 0};  // corners, triangles, edges, error
+  for (int corner = 0; corner < 8; ++corner)
+    for (int axis = 0; axis < 3; ++axis) numbers.push_back((corner >> axis & 1) != 0 ? kHalf : -kHalf);
+  for (const auto& [a, b, c, d] : kSides)
+    for (const int corner : {a, b, c, a, c, b, a, c, d, a, d, c}) numbers.push_back(corner);
+  std::vector<std::uint8_t> image = test_model_image();
+  std::uint8_t* at =
+      image.data() + (gnc::kModelImageSize<gnc::FixedPoint> - gnc::kMeshBytes<gnc::FixedPoint>);
+  for (const int number : numbers) {
+    *at++ = static_cast<std::uint8_t>(number & 0xFF);
+    *at++ = static_cast<std::uint8_t>((number >> 8) & 0xFF);
+  }
+  return gnc::with_changed_weights(image, {});  // with correct CRCs
 }
 
 void AppFixture::init_with_model() {

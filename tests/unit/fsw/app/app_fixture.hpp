@@ -26,6 +26,8 @@ inline constexpr std::int64_t kChaserTimeTolerance_ns = initial(Parameter::kChas
 
 // A valid image with random weights.
 const std::vector<std::uint8_t>& test_model_image();
+// The same with a box as surface, about as large as what good_frame() shows.
+std::vector<std::uint8_t> image_with_surface();
 inline constexpr const char* kTestTarget = "test_craft";
 
 // A frame that the estimator accepts; `scene` varies its content.

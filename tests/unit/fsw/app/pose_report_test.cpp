@@ -11,26 +11,6 @@
 namespace tumblesight::fsw {
 namespace {
 
-// The test's model with a box as surface, about as large as what its frames show.
-std::vector<std::uint8_t> image_with_surface() {
-  constexpr int kHalf = 16'000;  // of 32767: 1.6 m
-  constexpr std::array<std::array<int, 4>, 6> kSides{
-      {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
-  std::vector<int> numbers{8, 24, 0, 0};  // corners, triangles, edges, error
-  for (int corner = 0; corner < 8; ++corner)
-    for (int axis = 0; axis < 3; ++axis) numbers.push_back((corner >> axis & 1) != 0 ? kHalf : -kHalf);
-  for (const auto& [a, b, c, d] : kSides)
-    for (const int corner : {a, b, c, a, c, b, a, c, d, a, d, c}) numbers.push_back(corner);
-  std::vector<std::uint8_t> image = test_model_image();
-  std::uint8_t* at =
-      image.data() + (gnc::kModelImageSize<gnc::FixedPoint> - gnc::kMeshBytes<gnc::FixedPoint>);
-  for (const int number : numbers) {
-    *at++ = static_cast<std::uint8_t>(number & 0xFF);
-    *at++ = static_cast<std::uint8_t>((number >> 8) & 0xFF);
-  }
-  return gnc::with_changed_weights(image, {});  // with correct CRCs
-}
-
 class PoseReport : public AppFixture {
  protected:
   void init_with_surface() {
@@ -71,8 +51,8 @@ class LateCycle : public PoseReport {
     const gnc::RangeImage frame = good_frame(sequence_number + 1, next_time_ns(), sequence_number);
     StepInputs inputs;
     inputs.frame = &frame;
+    inputs.timing.stopwatch = keeps_deadline ? &stopwatch : nullptr;
     inputs.timing.start_ns = stopwatch.time_ns;
-    inputs.timing.keeps_deadline = keeps_deadline;
     stopwatch.time_ns += std::uint64_t{since_start_us} * 1000;
     ++sequence_number;
     step(inputs);
@@ -98,10 +78,18 @@ TEST_F(LateCycle, CutsItsRegistrationShortAndSaysSo) {
   EXPECT_EQ(out->telemetry.registrations_cut_short, 1U);
 }
 
-TEST_F(LateCycle, IsATimingFaultIfItPersists) {
+TEST_F(LateCycle, IsNoFaultIfItsReportIsOnTime) {
+  for (int k = 0; k < 8; ++k) step_late(1'200'000);
+  EXPECT_EQ(out->telemetry.registrations_cut_short, 8U);
+  EXPECT_EQ(out->telemetry.faults_persisting & 1U << static_cast<int>(hal::Fault::kDeadline), 0U);
+}
+
+TEST_F(LateCycle, WithoutASurfaceHasNothingToCutShort) {
+  init_with_model();
   for (int k = 0; k < 3; ++k) step_late(2'000'000);
-  EXPECT_NE(out->telemetry.faults_persisting & 1U << static_cast<int>(hal::Fault::kDeadline), 0U);
-  EXPECT_EQ(app->mode(), Mode::kRun);
+  ASSERT_EQ(validity(), Validity::kValid);
+  EXPECT_EQ(out->telemetry.registrations_cut_short, 0U);
+  EXPECT_EQ(events(EventId::kRegistrationCutShort), 0);
 }
 
 TEST_F(LateCycle, HasTheBudgetThatTheGroundSets) {

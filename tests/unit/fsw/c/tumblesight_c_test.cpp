@@ -33,7 +33,12 @@ struct Board {
   bool fails_to_write = false;
   std::uint64_t time_ns = 0;
 
-  static std::uint64_t now_ns(void* context) { return static_cast<Board*>(context)->time_ns += 1'000'000; }
+  std::uint64_t tick_ns = 1'000'000;
+
+  static std::uint64_t now_ns(void* context) {
+    auto& board = *static_cast<Board*>(context);
+    return board.time_ns += board.tick_ns;
+  }
   static tumblesight_store_status read(void* context, int copy, std::uint8_t* bytes) {
     auto& board = *static_cast<Board*>(context);
     if (board.read_status != TUMBLESIGHT_STORE_OK) return board.read_status;
@@ -58,10 +63,10 @@ class CInterface : public ::testing::Test {
     inputs.now_ns = kStart_ns;
   }
   // The test's model at an address that is a multiple of 64.
-  static const std::uint8_t* aligned_image() {
+  static const std::uint8_t* aligned_image(const std::vector<std::uint8_t>& bytes = test_model_image()) {
     static std::vector<std::uint8_t> room(test_model_image().size() + 64);
     std::uint8_t* const image = room.data() + (64 - reinterpret_cast<std::uintptr_t>(room.data()) % 64) % 64;
-    std::copy(test_model_image().begin(), test_model_image().end(), image);
+    std::copy(bytes.begin(), bytes.end(), image);
     return image;
   }
   tumblesight_status init() { return tumblesight_init(memory.data(), memory.size(), &settings, &app); }
@@ -452,6 +457,21 @@ TEST_F(CInterface, MeasuresWithTheCallersStopwatch) {
   ASSERT_EQ(init(), TUMBLESIGHT_OK);
   EXPECT_EQ(step_frame().telemetry.cycle_us, 0U) << "there is no cycle before";
   EXPECT_GE(step_frame().telemetry.cycle_us, 1000U);
+}
+
+// Verifies TS-TIM-130.
+TEST_F(CInterface, CutsTheRegistrationOfALateStepShortIfItHasAStopwatch) {
+  aligned_image(image_with_surface());
+  settings.context = &board;
+  for (const bool has_stopwatch : {false, true}) {
+    settings.stopwatch_ns = has_stopwatch ? Board::now_ns : nullptr;
+    board.tick_ns = 400'000'000;
+    ASSERT_EQ(init(), TUMBLESIGHT_OK);
+    step_frame(1);
+    const tumblesight_outputs& outputs = step_frame(2);
+    EXPECT_EQ(outputs.telemetry.frames_used, 2U);
+    EXPECT_EQ(outputs.telemetry.registrations_cut_short, has_stopwatch ? 2U : 0U);
+  }
 }
 
 TEST_F(CInterface, LoadsAModelIntoAWritableBank) {

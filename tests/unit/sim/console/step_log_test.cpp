@@ -178,7 +178,7 @@ TEST_F(Log, AStepWhoseSampleIsLostIsShownWhenOthersFollow) {
   log_.add(attitude_of(0));
   for (std::uint32_t k = 1; k <= 4; ++k) add_step(k);
   EXPECT_EQ(log_.state().steps, 5U);
-  EXPECT_TRUE(value(log_.rows(0)["rows"][0], "step_ms").is_null());
+  EXPECT_TRUE(value(log_.rows(0)["rows"][0], "cycle_ms").is_null());
 }
 
 TEST_F(Log, AStepThatIsOnlyAnnouncedIsNone) {
