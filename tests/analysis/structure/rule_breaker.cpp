@@ -20,7 +20,7 @@ std::string text;
 void* break_the_rules(int size) {
   std::printf("%d %f\n", size, static_cast<double>(std::exp(input) + std::tanh(input)));
   if (size < 0) throw size;
-  text.append("grows", static_cast<std::size_t>(size));
+  text.reserve(static_cast<std::size_t>(size));
   void* block = std::malloc(static_cast<std::size_t>(size));
   std::free(block);
   if (std::fopen("", "r") == nullptr) std::printf("none\n");
